@@ -1,0 +1,10 @@
+//! Exact signs: the kernel on which every decision of this crate stands.
+//!
+//! Nothing here knows about scenes. A predicate returns a [`Sign`], never a number, and the sign is
+//! the sign of the real-number expression for every finite input.
+
+mod orient;
+mod sign;
+
+pub use orient::orient3d;
+pub use sign::Sign;

@@ -1,0 +1,4 @@
+//! Exact from-point visibility.
+
+pub mod exact;
+pub mod scene;

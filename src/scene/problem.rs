@@ -1,0 +1,114 @@
+//! What can be wrong with a scene.
+
+use super::PolygonId;
+
+/// One thing that is wrong with the input of a [`SceneBuilder`](super::SceneBuilder).
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SceneProblem {
+    /// A coordinate is infinite or not a number.
+    #[error("vertex {vertex} has a coordinate that is not finite")]
+    NotFinite {
+        /// The index of the vertex.
+        vertex: usize,
+    },
+    /// A ring with fewer than three vertices.
+    #[error("polygon {polygon} has a ring of {count} vertices; it takes at least 3")]
+    TooFewVertices {
+        /// The polygon.
+        polygon: PolygonId,
+        /// How many vertices the ring has.
+        count: usize,
+    },
+    /// An index past the last vertex.
+    #[error("polygon {polygon} names vertex {vertex}, but there are {count} vertices")]
+    UnknownVertex {
+        /// The polygon.
+        polygon: PolygonId,
+        /// The index it names.
+        vertex: usize,
+        /// The number of vertices.
+        count: usize,
+    },
+    /// A material that was never added.
+    #[error("polygon {polygon} names material {material}, but there are {count} materials")]
+    UnknownMaterial {
+        /// The polygon.
+        polygon: PolygonId,
+        /// The material it names.
+        material: u32,
+        /// The number of materials.
+        count: usize,
+    },
+    /// An object that was never added.
+    #[error("polygon {polygon} names object {object}, but there are {count} objects")]
+    UnknownObject {
+        /// The polygon.
+        polygon: PolygonId,
+        /// The object it names.
+        object: u32,
+        /// The number of objects.
+        count: usize,
+    },
+    /// The boundary crosses itself, or a hole crosses the outer ring.
+    #[error("the boundary of polygon {polygon} crosses itself; split it where it does")]
+    SelfCrossing {
+        /// The polygon.
+        polygon: PolygonId,
+    },
+    /// The ring's coordinates span too many orders of magnitude to triangulate it.
+    #[error("polygon {polygon} cannot be triangulated: its coordinates span more than 2^{limit}; scale or split it")]
+    OutOfRange {
+        /// The polygon.
+        polygon: PolygonId,
+        /// The largest ratio of coordinates that is taken, as an exponent of 2.
+        limit: u32,
+    },
+    /// A number of a material is infinite, not a number, or negative.
+    #[error("material {material} ({name}) has a reflectance, exponent or emission that is negative or not finite")]
+    BadMaterial {
+        /// The material.
+        material: u32,
+        /// Its name.
+        name: String,
+    },
+    /// More vertices, edges or polygons than a 32-bit id can name.
+    #[error("the scene has more than {limit} {what}")]
+    TooLarge {
+        /// What there is too much of.
+        what: &'static str,
+        /// How many are taken.
+        limit: u64,
+    },
+}
+
+impl SceneProblem {
+    /// The polygon that is to blame, if it is one.
+    pub fn polygon(&self) -> Option<PolygonId> {
+        match *self {
+            Self::TooFewVertices { polygon, .. }
+            | Self::UnknownVertex { polygon, .. }
+            | Self::UnknownMaterial { polygon, .. }
+            | Self::UnknownObject { polygon, .. }
+            | Self::SelfCrossing { polygon }
+            | Self::OutOfRange { polygon, .. } => Some(polygon),
+            _ => None,
+        }
+    }
+}
+
+/// Everything that is wrong with a scene: every problem, not the first.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", summary(.problems))]
+pub struct SceneError {
+    /// The problems, by vertex and polygon in ascending order; never empty.
+    pub problems: Vec<SceneProblem>,
+}
+
+fn summary(problems: &[SceneProblem]) -> String {
+    match problems {
+        [] => "no problem".to_owned(),
+        [only] => only.to_string(),
+        [first, rest @ ..] => format!("{first} (and {} more problems)", rest.len()),
+    }
+}
