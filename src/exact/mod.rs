@@ -3,8 +3,17 @@
 //! Nothing here knows about scenes. A predicate returns a [`Sign`], never a number, and the sign is
 //! the sign of the real-number expression for every finite input.
 
+mod approx;
+mod arena;
+mod ball;
+mod frame;
 mod orient;
 mod sign;
 
 pub use orient::orient3d;
 pub use sign::Sign;
+
+pub(crate) use approx::{Approx3, U};
+pub(crate) use arena::{Arena, Num, Num3};
+pub(crate) use ball::Ball;
+pub(crate) use frame::{BitRange, Frame, given_vector};

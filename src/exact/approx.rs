@@ -1,0 +1,108 @@
+//! The f64 stage: vectors known up to a proven bound, and the filter on their dot product.
+//!
+//! Throughout, `u = 2^-53` is the unit roundoff. A sum or difference of two f64 is off by at most
+//! `u` times its value; a product by at most `u` times its value plus `2^-1075`, where it
+//! underflows. `err` is always a bound on each component.
+
+use super::Sign;
+use glam::DVec3;
+
+/// The unit roundoff, `2^-53`.
+pub(crate) const U: f64 = f64::EPSILON / 2.0;
+
+/// A bound on what all underflows of one formula can add.
+const UNDERFLOW: f64 = 1.0 / (1u64 << 48) as f64 * f64::MIN_POSITIVE;
+
+/// A real vector `r = s (v + d)` with some `s > 0`, `|v| <= 2` and `|d| <= err` in each component.
+///
+/// What is stored is `slack = 8 err + 32 u`: its sum over two vectors bounds the error of their
+/// computed dot product.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Approx3 {
+    pub(crate) v: DVec3,
+    pub(crate) slack: f64,
+}
+
+impl Approx3 {
+    /// Nothing is known: every filter passes the question on.
+    const UNKNOWN: Self = Self { v: DVec3::ZERO, slack: f64::INFINITY };
+
+    /// Scales `v`, known up to `err` in each component, by a power of two.
+    fn normalised(v: DVec3, err: f64) -> Self {
+        let most = v.abs().max_element();
+        if !v.is_finite() || most < f64::MIN_POSITIVE {
+            return Self::UNKNOWN;
+        }
+        let exponent = (most.to_bits() >> 52) as i32 - 1023;
+        // A power of two, halved first where it would be a denormal number.
+        let scale =
+            if exponent == 1023 { f64::MIN_POSITIVE / 2.0 } else { f64::from_bits(((1023 - exponent) as u64) << 52) };
+        // Exact but for components that underflow, by less than 2^-1074: the constant 32 u of the
+        // slack is twice what the dot product's own rounding takes.
+        let err = err * scale;
+        if err <= 0.125 { Self { v: v * scale, slack: 8.0 * err + 32.0 * U } } else { Self::UNKNOWN }
+    }
+
+    /// The direction from `eye` to a point known up to `err`.
+    ///
+    /// The difference adds `u` times its size.
+    pub(crate) fn direction(eye: DVec3, point: DVec3, err: f64) -> Self {
+        let v = point - eye;
+        Self::normalised(v, (err + U * v.abs().max_element()) * (1.0 + 8.0 * U))
+    }
+
+    /// A vector given exactly.
+    pub(crate) fn given(v: DVec3) -> Self {
+        Self::normalised(v, 0.0)
+    }
+
+    /// A vector known up to `err`.
+    pub(crate) fn known(v: DVec3, err: f64) -> Self {
+        Self::normalised(v, err)
+    }
+
+    /// The normal `(a - e) x (b - e)` of the plane through the eye and two points.
+    ///
+    /// Computed as `(a - e) x (b - a)`, which is the same and keeps its relative accuracy when `a`
+    /// and `b` are close together. Either factor is off by `u` relatively, so each of the two
+    /// products by `(1 + u)^3 - 1 < 3.01 u` and each difference by `8.1 u |a - e| |b - a|`.
+    pub(crate) fn edge_normal(eye: DVec3, a: DVec3, b: DVec3) -> Self {
+        let (p, q) = (a - eye, b - a);
+        let size = p.abs().max_element() * q.abs().max_element();
+        Self::normalised(p.cross(q), 9.0 * U * size + UNDERFLOW)
+    }
+
+    /// The cross product of two approximate vectors.
+    ///
+    /// With components below 2 and errors `e1, e2 <= 1/8`: each product is off by at most
+    /// `2 e1 + 2 e2 + e1 e2` and by `4 u` of rounding, the difference by `8 u` more; in all at most
+    /// `4.25 (e1 + e2) + 16.1 u`.
+    pub(crate) fn cross(self, other: Self) -> Self {
+        let err = (self.slack + other.slack) / 8.0;
+        Self::normalised(self.v.cross(other.v), 4.5 * err + 20.0 * U)
+    }
+
+    pub(crate) fn times_sign(self, sign: Sign) -> Self {
+        if sign.is_negative() { Self { v: -self.v, ..self } } else { self }
+    }
+
+    /// The sign of the dot product of the two real vectors, if f64 can tell.
+    ///
+    /// Proof. Let `x` be the computed value of `v.w`. With `|v|, |w| <= 2` and errors `e, f <= 1/8`,
+    /// `(v + d).(w + g)` differs from `v.w` by at most `6 e + 6 f + 3 e f <= 6.2 (e + f)`. Three
+    /// products of at most 4 are off by `4 u` each, the two sums by `8 u` and `12 u` (and a hair):
+    /// below `33 u`. The slacks add up to `8 (e + f) + 64 u`, which leaves room for the rounding of
+    /// the slacks themselves.
+    #[inline]
+    pub(crate) fn dot_sign(&self, other: &Self) -> Option<Sign> {
+        let x = self.v.dot(other.v);
+        let bound = self.slack + other.slack;
+        if x > bound {
+            Some(Sign::Positive)
+        } else if x < -bound {
+            Some(Sign::Negative)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! Integers of any width that live in one growing buffer: no allocation per number.
+//!
+//! A predicate takes a [`Arena::mark`], computes, reads a sign and goes back to the mark. The
+//! buffer keeps its capacity, so that a warmed-up arena does not touch the heap, and there is no
+//! width beyond which a result would be wrong: coordinates that span 2,000 bits just take longer.
+
+use super::Sign;
+use std::cmp::Ordering;
+
+/// A signed integer in an [`Arena`]: sign and magnitude, least limb first, no leading zero limbs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Num {
+    start: u32,
+    len: u32,
+    negative: bool,
+}
+
+impl Num {
+    pub(crate) const ZERO: Self = Self { start: 0, len: 0, negative: false };
+
+    pub(crate) fn sign(self) -> Sign {
+        match (self.len, self.negative) {
+            (0, _) => Sign::Zero,
+            (_, true) => Sign::Negative,
+            (_, false) => Sign::Positive,
+        }
+    }
+
+    pub(crate) fn negated(self) -> Self {
+        Self { negative: !self.negative, ..self }
+    }
+
+    /// The number times the sign, which is not zero.
+    pub(crate) fn times_sign(self, sign: Sign) -> Self {
+        debug_assert!(!sign.is_zero());
+        if sign.is_negative() { self.negated() } else { self }
+    }
+}
+
+/// A vector of integers.
+pub(crate) type Num3 = [Num; 3];
+
+/// The buffer.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Arena {
+    limbs: Vec<u64>,
+}
+
+impl Arena {
+    /// The place to come back to with [`Arena::release`].
+    pub(crate) fn mark(&self) -> usize {
+        self.limbs.len()
+    }
+
+    /// Forgets every number made since the mark was taken.
+    pub(crate) fn release(&mut self, mark: usize) {
+        self.limbs.truncate(mark);
+    }
+
+    fn finish(&mut self, start: usize, negative: bool) -> Num {
+        while self.limbs.len() > start && self.limbs.last() == Some(&0) {
+            self.limbs.pop();
+        }
+        debug_assert!(u32::try_from(self.limbs.len()).is_ok(), "numbers are released long before 32 GiB");
+        Num { start: start as u32, len: (self.limbs.len() - start) as u32, negative }
+    }
+
+    fn range(n: Num) -> std::ops::Range<usize> {
+        n.start as usize..n.start as usize + n.len as usize
+    }
+
+    pub(crate) fn integer(&mut self, value: i128) -> Num {
+        let start = self.limbs.len();
+        let magnitude = value.unsigned_abs();
+        self.limbs.extend([magnitude as u64, (magnitude >> 64) as u64]);
+        self.finish(start, value < 0)
+    }
+
+    /// `mantissa * 2^shift` with the sign given apart.
+    pub(crate) fn shifted(&mut self, mantissa: u64, shift: u32, negative: bool) -> Num {
+        let start = self.limbs.len();
+        self.limbs.resize(start + shift as usize / 64, 0);
+        let wide = u128::from(mantissa) << (shift % 64);
+        self.limbs.extend([wide as u64, (wide >> 64) as u64]);
+        self.finish(start, negative)
+    }
+
+    pub(crate) fn mul(&mut self, a: Num, b: Num) -> Num {
+        if a.len == 0 || b.len == 0 {
+            return Num::ZERO;
+        }
+        let start = self.limbs.len();
+        self.limbs.resize(start + (a.len + b.len) as usize, 0);
+        let (known, out) = self.limbs.split_at_mut(start);
+        let (a_limbs, b_limbs) = (&known[Self::range(a)], &known[Self::range(b)]);
+        for (i, &x) in a_limbs.iter().enumerate() {
+            let mut carry = 0u64;
+            let row = &mut out[i..=i + b_limbs.len()];
+            for (o, &y) in row.iter_mut().zip(b_limbs) {
+                let t = u128::from(x) * u128::from(y) + u128::from(*o) + u128::from(carry);
+                *o = t as u64;
+                carry = (t >> 64) as u64;
+            }
+            row[b_limbs.len()] = carry;
+        }
+        self.finish(start, a.negative != b.negative)
+    }
+
+    fn compare_magnitudes(&self, a: Num, b: Num) -> Ordering {
+        a.len.cmp(&b.len).then_with(|| {
+            let (a, b) = (&self.limbs[Self::range(a)], &self.limbs[Self::range(b)]);
+            a.iter().rev().cmp(b.iter().rev())
+        })
+    }
+
+    pub(crate) fn add(&mut self, a: Num, b: Num) -> Num {
+        if a.negative == b.negative || a.len == 0 || b.len == 0 {
+            let negative = if a.len == 0 { b.negative } else { a.negative };
+            return self.add_magnitudes(a, b, negative);
+        }
+        match self.compare_magnitudes(a, b) {
+            Ordering::Equal => Num::ZERO,
+            Ordering::Greater => self.subtract_magnitudes(a, b, a.negative),
+            Ordering::Less => self.subtract_magnitudes(b, a, b.negative),
+        }
+    }
+
+    pub(crate) fn sub(&mut self, a: Num, b: Num) -> Num {
+        self.add(a, b.negated())
+    }
+
+    fn add_magnitudes(&mut self, a: Num, b: Num, negative: bool) -> Num {
+        let (long, short) = if a.len >= b.len { (a, b) } else { (b, a) };
+        let start = self.limbs.len();
+        let mut carry = false;
+        for k in 0..long.len {
+            let x = self.limbs[(long.start + k) as usize];
+            let y = if k < short.len { self.limbs[(short.start + k) as usize] } else { 0 };
+            let (t, first) = x.overflowing_add(y);
+            let (t, second) = t.overflowing_add(u64::from(carry));
+            carry = first || second;
+            self.limbs.push(t);
+        }
+        self.limbs.push(u64::from(carry));
+        self.finish(start, negative)
+    }
+
+    /// `|a| - |b|`, which must not be negative.
+    fn subtract_magnitudes(&mut self, a: Num, b: Num, negative: bool) -> Num {
+        let start = self.limbs.len();
+        let mut borrow = false;
+        for k in 0..a.len {
+            let x = self.limbs[(a.start + k) as usize];
+            let y = if k < b.len { self.limbs[(b.start + k) as usize] } else { 0 };
+            let (t, first) = x.overflowing_sub(y);
+            let (t, second) = t.overflowing_sub(u64::from(borrow));
+            borrow = first || second;
+            self.limbs.push(t);
+        }
+        debug_assert!(!borrow);
+        self.finish(start, negative)
+    }
+
+    pub(crate) fn sub3(&mut self, a: Num3, b: Num3) -> Num3 {
+        [self.sub(a[0], b[0]), self.sub(a[1], b[1]), self.sub(a[2], b[2])]
+    }
+
+    pub(crate) fn add3(&mut self, a: Num3, b: Num3) -> Num3 {
+        [self.add(a[0], b[0]), self.add(a[1], b[1]), self.add(a[2], b[2])]
+    }
+
+    pub(crate) fn scale3(&mut self, factor: Num, v: Num3) -> Num3 {
+        v.map(|x| self.mul(factor, x))
+    }
+
+    pub(crate) fn cross(&mut self, a: Num3, b: Num3) -> Num3 {
+        [(1, 2), (2, 0), (0, 1)].map(|(i, j)| {
+            let p = self.mul(a[i], b[j]);
+            let q = self.mul(a[j], b[i]);
+            self.sub(p, q)
+        })
+    }
+
+    pub(crate) fn dot(&mut self, a: Num3, b: Num3) -> Num {
+        let x = self.mul(a[0], b[0]);
+        let y = self.mul(a[1], b[1]);
+        let z = self.mul(a[2], b[2]);
+        let xy = self.add(x, y);
+        self.add(xy, z)
+    }
+
+    /// The sign of a dot product; leaves nothing behind.
+    pub(crate) fn dot_sign(&mut self, a: Num3, b: Num3) -> Sign {
+        let mark = self.mark();
+        let sign = self.dot(a, b).sign();
+        self.release(mark);
+        sign
+    }
+
+    /// Moves a vector made since `mark` down to the mark and releases all else made since: what is
+    /// kept stays, what it was made from goes.
+    pub(crate) fn keep3(&mut self, mark: usize, v: Num3) -> Num3 {
+        let tail = self.limbs.len();
+        let mut kept = v;
+        let mut place = mark;
+        for n in &mut kept {
+            self.limbs.extend_from_within(Self::range(*n));
+            n.start = place as u32;
+            place += n.len as usize;
+        }
+        self.limbs.copy_within(tail.., mark);
+        self.limbs.truncate(place);
+        kept
+    }
+
+    /// The vector scaled by a power of two to a largest component in `[0.5, 1)`, each component
+    /// with a relative error below 2^-52 or an absolute one below 2^-500; zero stays zero.
+    pub(crate) fn direction(&self, v: Num3) -> glam::DVec3 {
+        let bits = |n: Num| match self.limbs[Self::range(n)].last() {
+            None => 0,
+            Some(top) => i64::from(n.len) * 64 - i64::from(top.leading_zeros()),
+        };
+        let most = v.iter().map(|&n| bits(n)).max().unwrap_or(0);
+        let component = |n: Num| -> f64 {
+            if n.len == 0 || most - bits(n) > 500 {
+                return 0.0;
+            }
+            // The two or three top limbs hold at least 64 significant bits.
+            let limbs = &self.limbs[Self::range(n)];
+            let low = limbs.len().saturating_sub(3);
+            let mut value = 0.0;
+            for (k, &limb) in limbs.iter().enumerate().skip(low) {
+                value += limb as f64 * power_of_two(64 * k as i64 - most);
+            }
+            if n.negative { -value } else { value }
+        };
+        glam::DVec3::new(component(v[0]), component(v[1]), component(v[2]))
+    }
+}
+
+/// `2^exponent`, 0 where it is too small for an f64.
+fn power_of_two(exponent: i64) -> f64 {
+    2f64.powi(exponent.clamp(-1100, 1100) as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_bigint::BigInt;
+    use proptest::prelude::*;
+
+    fn big(arena: &Arena, n: Num) -> BigInt {
+        let mut value = BigInt::from(0);
+        for &limb in arena.limbs[Arena::range(n)].iter().rev() {
+            value = (value << 64) + BigInt::from(limb);
+        }
+        if n.negative { -value } else { value }
+    }
+
+    proptest! {
+        #[test]
+        fn arithmetic_agrees_with_big_integers(
+            a in any::<i128>(), b in any::<i128>(), c in any::<i64>(), shift in 0u32..300, m in any::<u64>(), negative: bool,
+        ) {
+            let mut arena = Arena::default();
+            let (x, y, z) = (arena.integer(a), arena.integer(b), arena.integer(i128::from(c)));
+            let w = arena.shifted(m, shift, negative);
+            let bw: BigInt = (BigInt::from(m) << shift) * if negative { -1 } else { 1 };
+            prop_assert_eq!(big(&arena, w), bw.clone());
+            let xy = arena.mul(x, y);
+            let xyw = arena.mul(xy, w);
+            let sum = arena.add(xyw, z);
+            let difference = arena.sub(z, xyw);
+            let exact = BigInt::from(a) * BigInt::from(b) * &bw;
+            prop_assert_eq!(big(&arena, sum), &exact + BigInt::from(c));
+            prop_assert_eq!(big(&arena, difference), BigInt::from(c) - &exact);
+            let zero = arena.sub(sum, sum);
+            prop_assert_eq!(zero.sign(), Sign::Zero);
+            let direction = arena.direction([x, y, xyw]);
+            prop_assert!(direction.abs().max_element() <= 1.0);
+            prop_assert_eq!(Sign::of(direction.z), xyw.sign());
+        }
+    }
+}
