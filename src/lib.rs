@@ -1,4 +1,5 @@
 //! Exact from-point visibility.
 
+pub mod bsp;
 pub mod exact;
 pub mod scene;

@@ -31,6 +31,11 @@ impl BitRange {
         Self { low: self.low.min(low), high: self.high.max(high) }
     }
 
+    /// True if `x` lies on the grid of this range and is no longer than it.
+    pub(crate) fn holds(self, x: f64) -> bool {
+        self.with(x) == self
+    }
+
     pub(crate) fn union(self, other: Self) -> Self {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
