@@ -19,7 +19,8 @@ pub use stats::BspStats;
 pub use traverse::{BackToFront, FrontToBack};
 
 pub(crate) use fragment::{Bounds, FragmentSide};
-pub(crate) use skeleton::{LineDef, LineId, PointDef, PointId, Skeleton};
+pub(crate) use skeleton::{LineDef, LineId, PointId, Skeleton};
+pub(crate) use traverse::Step;
 
 use crate::scene::{PieceId, PlaneId, PolygonId, Scene};
 use std::ops::Range;

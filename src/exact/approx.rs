@@ -82,6 +82,11 @@ impl Approx3 {
         Self::normalised(self.v.cross(other.v), 4.5 * err + 20.0 * U)
     }
 
+    /// The bound on the error of each component, relative to a largest component of 1 to 2.
+    pub(crate) fn error_bound(&self) -> f64 {
+        self.slack / 8.0
+    }
+
     pub(crate) fn times_sign(self, sign: Sign) -> Self {
         if sign.is_negative() { Self { v: -self.v, ..self } } else { self }
     }

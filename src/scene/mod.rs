@@ -316,6 +316,11 @@ pub struct PieceRef<'a> {
 }
 
 impl<'a> PieceRef<'a> {
+    /// The scene it is part of.
+    pub fn scene(self) -> &'a Scene {
+        self.scene
+    }
+
     /// Its id.
     pub fn id(self) -> PieceId {
         self.id

@@ -1,0 +1,232 @@
+//! Great circles and directions of one view, by exact definition, and the one predicate of the
+//! contour tree: on which side of a great circle a direction lies.
+
+use crate::bsp::{LineDef, LineId, PointId, Skeleton, Tree};
+use crate::exact::{Approx3, Arena, Frame, Num3, Sign, U, given_vector};
+use crate::scene::{PlaneId, SupportingPlane, VertexId};
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+/// A great circle of a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(crate) struct CircleId(pub(crate) u32);
+
+/// A direction of a view.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DirectionId(pub(crate) u32);
+
+/// The exact definition of a splitter: a plane through the eye `e`, by its normal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Splitter {
+    /// Through two vertices of the scene: `(a - e) x (b - e)`.
+    Edge([VertexId; 2]),
+    /// Through the line where two planes meet: `h_2 N_1 - h_1 N_2` with the planes' normals and the
+    /// heights of the eye over them.
+    Crease([SupportingPlane; 2]),
+    /// A normal given as three numbers: quadtree, horizon of a free hemisphere.
+    Given(DVec3),
+    /// A supporting plane moved to the eye: the horizon of a point on a surface.
+    Parallel(SupportingPlane),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum CircleDef {
+    Line(LineId),
+    Given(DVec3),
+    Parallel(PlaneId),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum DirectionDef {
+    /// From the eye to a point.
+    Point(PointId),
+    /// `n_1 x n_2`, or its opposite.
+    Crossing { circles: [CircleId; 2], reversed: bool },
+}
+
+/// Directions whose bound on the error of a component is above this are computed from integers.
+const REFINE_ABOVE: f64 = 1e-13;
+
+/// All great circles and directions of one view.
+#[derive(Clone, Debug)]
+pub(crate) struct Directions {
+    eye: DVec3,
+    frame: Frame,
+    circles: Vec<CircleDef>,
+    normals: Vec<Approx3>,
+    definitions: Vec<DirectionDef>,
+    approx: Vec<Approx3>,
+}
+
+/// Integers that were needed once and may be needed again.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ExactCache {
+    arena: Arena,
+    normals: FxHashMap<CircleId, Num3>,
+    directions: FxHashMap<DirectionId, Num3>,
+    /// How often the filter did not decide.
+    pub(crate) undecided: u64,
+    /// How often identity did not decide either.
+    pub(crate) integer: u64,
+}
+
+impl Directions {
+    pub(crate) fn new(skeleton: &Skeleton, eye: DVec3) -> Self {
+        Self {
+            eye,
+            frame: Frame::new(skeleton.bits, eye),
+            circles: Vec::new(),
+            normals: Vec::new(),
+            definitions: Vec::new(),
+            approx: Vec::new(),
+        }
+    }
+
+    pub(crate) fn circle_count(&self) -> usize {
+        self.circles.len()
+    }
+
+    fn push_circle(&mut self, def: CircleDef, normal: Approx3) -> CircleId {
+        self.circles.push(def);
+        self.normals.push(normal);
+        CircleId(self.circles.len() as u32 - 1)
+    }
+
+    pub(crate) fn push_line(&mut self, skeleton: &Skeleton, line: LineId) -> CircleId {
+        self.push_circle(CircleDef::Line(line), skeleton.approx_line_normal(self.eye, line))
+    }
+
+    pub(crate) fn push_given(&mut self, normal: DVec3) -> CircleId {
+        self.push_circle(CircleDef::Given(normal), Approx3::given(normal))
+    }
+
+    pub(crate) fn push_parallel(&mut self, skeleton: &Skeleton, plane: PlaneId) -> CircleId {
+        self.push_circle(CircleDef::Parallel(plane), skeleton.approx_normal(plane))
+    }
+
+    pub(crate) fn push_point(&mut self, skeleton: &Skeleton, point: PointId) -> DirectionId {
+        let approx = skeleton.approx_point(point);
+        self.definitions.push(DirectionDef::Point(point));
+        self.approx.push(Approx3::direction(self.eye, approx.position, approx.err.max_element()));
+        DirectionId(self.definitions.len() as u32 - 1)
+    }
+
+    /// The direction `n_1 x n_2`, or the opposite one.
+    pub(crate) fn push_crossing(
+        &mut self,
+        skeleton: &Skeleton,
+        circles: [CircleId; 2],
+        reversed: bool,
+        cache: &mut ExactCache,
+    ) -> DirectionId {
+        let [m, n] = circles.map(|c| &self.normals[c.0 as usize]);
+        let sign = if reversed { Sign::Negative } else { Sign::Positive };
+        let mut approx = m.cross(*n).times_sign(sign);
+        self.definitions.push(DirectionDef::Crossing { circles, reversed });
+        let id = DirectionId(self.definitions.len() as u32 - 1);
+        if approx.error_bound() > REFINE_ABOVE {
+            let exact = self.exact_direction(skeleton, id, cache);
+            approx = Approx3::known(cache.arena.direction(exact), 8.0 * U);
+        }
+        self.approx.push(approx);
+        id
+    }
+
+    /// On which side of the great circle the direction lies, exactly.
+    #[inline]
+    pub(crate) fn side(&self, skeleton: &Skeleton, d: DirectionId, c: CircleId, cache: &mut ExactCache) -> Sign {
+        match self.approx[d.0 as usize].dot_sign(&self.normals[c.0 as usize]) {
+            Some(sign) => sign,
+            None => self.undecided_side(skeleton, d, c, cache),
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn undecided_side(&self, skeleton: &Skeleton, d: DirectionId, c: CircleId, cache: &mut ExactCache) -> Sign {
+        cache.undecided += 1;
+        let known_zero = match (self.definitions[d.0 as usize], self.circles[c.0 as usize]) {
+            (DirectionDef::Crossing { circles, .. }, _) => circles.contains(&c),
+            (DirectionDef::Point(point), CircleDef::Line(line)) => skeleton.known_on_line(point, line),
+            _ => false,
+        };
+        if known_zero {
+            return Sign::Zero;
+        }
+        cache.integer += 1;
+        let normal = self.exact_normal(skeleton, c, cache);
+        let direction = self.exact_direction(skeleton, d, cache);
+        cache.arena.dot_sign(normal, direction)
+    }
+
+    fn exact_normal(&self, skeleton: &Skeleton, c: CircleId, cache: &mut ExactCache) -> Num3 {
+        if let Some(&known) = cache.normals.get(&c) {
+            return known;
+        }
+        let arena = &mut cache.arena;
+        let mark = arena.mark();
+        let normal = match self.circles[c.0 as usize] {
+            CircleDef::Line(line) => skeleton.exact_line_normal(&self.frame, arena, line),
+            CircleDef::Given(normal) => given_vector(arena, normal),
+            CircleDef::Parallel(plane) => skeleton.exact_plane(&self.frame, arena, plane).0,
+        };
+        let normal = arena.keep3(mark, normal);
+        cache.normals.insert(c, normal);
+        normal
+    }
+
+    fn exact_direction(&self, skeleton: &Skeleton, d: DirectionId, cache: &mut ExactCache) -> Num3 {
+        if let Some(&known) = cache.directions.get(&d) {
+            return known;
+        }
+        let direction = match self.definitions[d.0 as usize] {
+            DirectionDef::Point(point) => {
+                let mark = cache.arena.mark();
+                let (x, _) = skeleton.exact_point(&self.frame, &mut cache.arena, skeleton.point(point));
+                cache.arena.keep3(mark, x)
+            }
+            DirectionDef::Crossing { circles, reversed } => {
+                let [m, n] = circles.map(|c| self.exact_normal(skeleton, c, cache));
+                let mark = cache.arena.mark();
+                let x = if reversed { cache.arena.cross(n, m) } else { cache.arena.cross(m, n) };
+                cache.arena.keep3(mark, x)
+            }
+        };
+        cache.directions.insert(d, direction);
+        direction
+    }
+
+    /// On which side of the great circle a direction given by three numbers lies, exactly.
+    pub(crate) fn given_side(&self, skeleton: &Skeleton, d: DVec3, c: CircleId, cache: &mut ExactCache) -> Sign {
+        if let Some(sign) = Approx3::given(d).dot_sign(&self.normals[c.0 as usize]) {
+            return sign;
+        }
+        let normal = self.exact_normal(skeleton, c, cache);
+        let mark = cache.arena.mark();
+        let direction = given_vector(&mut cache.arena, d);
+        let sign = cache.arena.dot_sign(normal, direction);
+        cache.arena.release(mark);
+        sign
+    }
+
+    /// The direction as a unit vector.
+    pub(crate) fn unit(&self, d: DirectionId) -> DVec3 {
+        self.approx[d.0 as usize].v.normalize_or_zero()
+    }
+
+    /// The normal of a great circle in floating point: `n . d > 0` is its positive side.
+    pub(crate) fn normal(&self, c: CircleId) -> &Approx3 {
+        &self.normals[c.0 as usize]
+    }
+
+    pub(crate) fn splitter(&self, tree: &Tree, c: CircleId) -> Splitter {
+        match self.circles[c.0 as usize] {
+            CircleDef::Line(line) => match tree.skeleton.line(line) {
+                LineDef::Edge(ends) => Splitter::Edge(ends),
+                LineDef::Crease(planes) => Splitter::Crease(planes.map(|p| tree.skeleton.plane(p))),
+            },
+            CircleDef::Given(normal) => Splitter::Given(normal),
+            CircleDef::Parallel(plane) => Splitter::Parallel(tree.skeleton.plane(plane)),
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! The contour image and its cells.
+
+use super::directions::Splitter;
+use super::domain::Domain;
+use super::polygon::PolygonArc;
+use super::tree::{ContourTree, LeafState, Link};
+use super::view::ViewStats;
+use super::viewpoint::Viewpoint;
+use crate::bsp::{FragmentId, SceneBsp};
+use crate::exact::Sign;
+use crate::scene::{PieceId, PolygonId, Side};
+use glam::DVec3;
+
+/// A cell of a [`ContourImage`], numbered from 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CellId(pub u32);
+
+impl CellId {
+    /// The number as an index.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// The exact subdivision of a domain of directions into convex cells, each with the polygon seen in
+/// all of it, or with nothing.
+#[derive(Clone, Debug)]
+pub struct ContourImage {
+    bsp: SceneBsp,
+    viewpoint: Viewpoint,
+    domain: Domain,
+    pub(super) tree: ContourTree,
+    /// The leaves of the tree that are cells, in the order of their making, and the reverse.
+    leaves: Vec<u32>,
+    pub(super) cell_of_leaf: Vec<Option<CellId>>,
+    stats: ViewStats,
+}
+
+impl ContourImage {
+    pub(super) fn new(
+        bsp: SceneBsp,
+        viewpoint: Viewpoint,
+        domain: Domain,
+        tree: ContourTree,
+        stats: ViewStats,
+    ) -> Self {
+        let mut leaves = Vec::new();
+        let mut cell_of_leaf = Vec::with_capacity(tree.leaves.len());
+        for (k, leaf) in tree.leaves.iter().enumerate() {
+            let is_cell = leaf.state != LeafState::Outside;
+            cell_of_leaf.push(is_cell.then_some(CellId(leaves.len() as u32)));
+            if is_cell {
+                leaves.push(k as u32);
+            }
+        }
+        Self { bsp, viewpoint, domain, tree, leaves, cell_of_leaf, stats }
+    }
+
+    /// The scene's 3D BSP.
+    pub fn bsp(&self) -> &SceneBsp {
+        &self.bsp
+    }
+
+    /// Where it was seen from.
+    pub fn viewpoint(&self) -> &Viewpoint {
+        &self.viewpoint
+    }
+
+    /// The directions it covers.
+    pub fn domain(&self) -> &Domain {
+        &self.domain
+    }
+
+    /// The unit normal of the receiver, for hemispheres.
+    pub fn normal(&self) -> Option<DVec3> {
+        match self.domain {
+            Domain::Sphere => None,
+            Domain::Hemisphere(normal) => Some((normal / normal.abs().max_element()).normalize()),
+            Domain::Above => self.viewpoint.surface_normal(&self.bsp),
+        }
+    }
+
+    /// What it took to make it.
+    pub fn stats(&self) -> &ViewStats {
+        &self.stats
+    }
+
+    /// The number of cells.
+    pub fn cell_count(&self) -> usize {
+        self.leaves.len()
+    }
+
+    /// A cell by its number.
+    ///
+    /// # Panics
+    /// If there is no such cell.
+    pub fn cell(&self, id: CellId) -> Cell<'_> {
+        Cell { image: self, id, leaf: self.leaves[id.index()] }
+    }
+
+    /// All cells; together they cover the domain, and no two overlap.
+    pub fn cells(&self) -> impl ExactSizeIterator<Item = Cell<'_>> {
+        (0..self.leaves.len() as u32).map(|k| self.cell(CellId(k)))
+    }
+
+    /// The arcs along which the contour tree cuts its regions, root first: what `--show-tree` draws.
+    pub fn tree_arcs(&self) -> Vec<TreeArc> {
+        let mut arcs = Vec::new();
+        for cell in self.cells() {
+            for (k, side) in cell.arcs().iter().enumerate() {
+                // Either neighbour has the arc; it is enough to draw it from its positive side, and
+                // from the other one where that is outside of the domain.
+                let next = cell.arcs()[(k + 1) % cell.arcs().len()];
+                let splitter = self.tree.directions.splitter(&self.bsp.tree, side.along.circle());
+                if side.along.inside().is_positive() || matches!(splitter, Splitter::Parallel(_)) {
+                    let ends = [side.from, next.from].map(|d| self.tree.directions.unit(d));
+                    arcs.push(TreeArc { ends, splitter });
+                }
+            }
+        }
+        arcs
+    }
+
+    pub(super) fn root(&self) -> Link {
+        self.tree.root
+    }
+}
+
+/// A stretch of a splitter of the contour tree.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TreeArc {
+    /// Its ends, as unit directions less than pi apart.
+    pub ends: [DVec3; 2],
+    /// The splitter it is part of.
+    pub splitter: Splitter,
+}
+
+/// A convex cell of a [`ContourImage`].
+#[derive(Clone, Copy, Debug)]
+pub struct Cell<'a> {
+    image: &'a ContourImage,
+    id: CellId,
+    leaf: u32,
+}
+
+impl<'a> Cell<'a> {
+    /// Its number.
+    pub fn id(self) -> CellId {
+        self.id
+    }
+
+    /// The image it is part of.
+    pub fn image(self) -> &'a ContourImage {
+        self.image
+    }
+
+    /// The fragment seen in it; `None` for background.
+    pub fn fragment(self) -> Option<FragmentId> {
+        match self.image.tree.leaves[self.leaf as usize].state {
+            LeafState::Filled(fragment) => Some(fragment),
+            LeafState::Open | LeafState::Outside => None,
+        }
+    }
+
+    /// The polygon seen in it; `None` for background.
+    pub fn polygon(self) -> Option<PolygonId> {
+        self.fragment().map(|id| self.image.bsp.fragment(id).polygon())
+    }
+
+    /// The piece of the polygon seen in it.
+    pub fn piece(self) -> Option<PieceId> {
+        self.fragment().map(|id| self.image.bsp.fragment(id).piece())
+    }
+
+    /// The side of the polygon seen in it.
+    pub fn side(self) -> Option<Side> {
+        self.image.bsp.tree.shown_side(self.piece()?, self.image.viewpoint.eye())
+    }
+
+    /// Its corners as unit directions, counter-clockwise seen from outside of the sphere. Rounded:
+    /// slivers may repeat a direction.
+    pub fn boundary(self) -> impl ExactSizeIterator<Item = DVec3> + 'a {
+        self.arcs().iter().map(move |arc| self.image.tree.directions.unit(arc.from))
+    }
+
+    /// The great circles it is bounded by, each with the sign that directions inside have: number `k`
+    /// leads from corner `k` to corner `k + 1`.
+    pub fn splitters(self) -> impl ExactSizeIterator<Item = (Splitter, Sign)> + 'a {
+        let tree = &self.image.bsp.tree;
+        let directions = &self.image.tree.directions;
+        self.arcs().iter().map(move |arc| (directions.splitter(tree, arc.along.circle()), arc.along.inside()))
+    }
+
+    /// Where the ray in a unit direction meets the plane of the polygon seen; `None` for background.
+    pub fn point_at(self, direction: DVec3) -> Option<DVec3> {
+        let skeleton = &self.image.bsp.tree.skeleton;
+        let plane = self.image.bsp.scene().piece(self.piece()?).plane_id();
+        let normal = skeleton.approx_normal(plane).v;
+        let eye = self.image.viewpoint.eye();
+        let point = eye + direction * (normal.dot(skeleton.anchor(plane) - eye) / normal.dot(direction));
+        point.is_finite().then_some(point)
+    }
+
+    pub(super) fn arcs(self) -> &'a [PolygonArc] {
+        self.image.tree.boundary(self.leaf)
+    }
+}

@@ -1,0 +1,25 @@
+//! The contour image: which polygon is seen in which direction, exactly.
+//!
+//! A 2D BSP on the sphere of directions (the *contour tree*) takes the fragments of the scene front
+//! to back. Its splitters are planes through the viewpoint, that is great circles. Its leaves are
+//! convex: not seen into yet, outside of the domain, or filled with one polygon for good. What is
+//! left open in the end shows the background.
+
+mod directions;
+mod domain;
+mod image;
+mod locate;
+mod neighbours;
+mod polygon;
+mod subdivision;
+mod tree;
+mod view;
+mod viewpoint;
+
+pub use directions::Splitter;
+pub use domain::Domain;
+pub use image::{Cell, CellId, ContourImage, TreeArc};
+pub use locate::Location;
+pub use neighbours::Neighbour;
+pub use view::{ViewError, ViewOptions, ViewStats};
+pub use viewpoint::{SurfaceError, Viewpoint};

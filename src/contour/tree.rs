@@ -1,0 +1,400 @@
+//! The contour tree: a 2D BSP on the sphere of directions.
+
+use super::directions::{CircleId, DirectionId, Directions};
+use super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
+use crate::bsp::{Bounds, FragmentId, Skeleton};
+use crate::exact::{Sign, U};
+use glam::DVec3;
+
+/// A place in the tree: an inner node or a leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Link {
+    Node(u32),
+    Leaf(u32),
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TreeNode {
+    pub(crate) circle: CircleId,
+    pub(crate) negative: Link,
+    pub(crate) positive: Link,
+    parent: Option<u32>,
+    /// Some leaf below is open.
+    open: bool,
+}
+
+/// What is known of a leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum LeafState {
+    /// Nothing seen in it yet.
+    Open,
+    /// Not part of the domain.
+    Outside,
+    /// Filled by a fragment, which hides all that come later.
+    Filled(FragmentId),
+}
+
+/// A convex region of directions.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Leaf {
+    pub(crate) state: LeafState,
+    start: u32,
+    len: u32,
+    parent: Option<u32>,
+}
+
+/// The tree of one view, with its great circles and directions.
+#[derive(Clone, Debug)]
+pub(crate) struct ContourTree {
+    pub(crate) directions: Directions,
+    pub(crate) nodes: Vec<TreeNode>,
+    pub(crate) leaves: Vec<Leaf>,
+    pub(crate) root: Link,
+    /// The boundaries of leaves, one after the other; those of former leaves too.
+    arcs: Vec<PolygonArc>,
+}
+
+/// Buffers that insertion needs.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Workspace {
+    pub(crate) knife: Knife,
+    arcs: Vec<PolygonArc>,
+    stack: Vec<(Link, usize, usize)>,
+    negative: Vec<PolygonArc>,
+    positive: Vec<PolygonArc>,
+    region: Vec<PolygonArc>,
+    links: Vec<Link>,
+    /// How many tree nodes insertions went through.
+    pub(crate) visited: u64,
+}
+
+impl ContourTree {
+    /// The whole sphere, cut into octants by the coordinate planes.
+    pub(crate) fn octants(skeleton: &Skeleton, mut directions: Directions, knife: &mut Knife) -> Self {
+        let planes = DVec3::AXES.map(|n| directions.push_given(n));
+        let mut poles = [[DirectionId(0); 2]; 3];
+        for (axis, pole) in poles.iter_mut().enumerate() {
+            let circles = [planes[(axis + 1) % 3], planes[(axis + 2) % 3]];
+            *pole = [false, true].map(|r| directions.push_crossing(skeleton, circles, r, &mut knife.cache));
+        }
+        let mut tree =
+            Self { directions, nodes: Vec::new(), leaves: Vec::new(), root: Link::Node(0), arcs: Vec::new() };
+        tree.octant_node(planes, poles, &mut Vec::new(), None);
+        tree
+    }
+
+    fn octant_node(
+        &mut self,
+        planes: [CircleId; 3],
+        poles: [[DirectionId; 2]; 3],
+        signs: &mut Vec<Sign>,
+        parent: Option<u32>,
+    ) -> Link {
+        if let &[x, y, z] = signs.as_slice() {
+            let corner = |axis: usize| poles[axis][usize::from(signs[axis].is_negative())];
+            // From pole to pole along the plane of the third axis, counter-clockwise.
+            let order = if (x * y * z).is_positive() { [0, 1, 2] } else { [0, 2, 1] };
+            let arcs = [0, 1, 2].map(|k| {
+                let (a, b) = (order[k], order[(k + 1) % 3]);
+                let third = 3 - a - b;
+                PolygonArc { from: corner(a), along: HalfSphere::new(planes[third], signs[third]) }
+            });
+            return self.push_leaf(&arcs, LeafState::Open, parent);
+        }
+        let node = self.nodes.len() as u32;
+        let unset = Link::Leaf(u32::MAX);
+        let circle = planes[signs.len()];
+        self.nodes.push(TreeNode { circle, negative: unset, positive: unset, parent, open: true });
+        let [negative, positive] = [Sign::Negative, Sign::Positive].map(|sign| {
+            signs.push(sign);
+            let child = self.octant_node(planes, poles, signs, Some(node));
+            signs.pop();
+            child
+        });
+        (self.nodes[node as usize].negative, self.nodes[node as usize].positive) = (negative, positive);
+        Link::Node(node)
+    }
+
+    fn push_leaf(&mut self, arcs: &[PolygonArc], state: LeafState, parent: Option<u32>) -> Link {
+        let leaf = Leaf { state, start: self.arcs.len() as u32, len: arcs.len() as u32, parent };
+        self.arcs.extend_from_slice(arcs);
+        self.leaves.push(leaf);
+        Link::Leaf(self.leaves.len() as u32 - 1)
+    }
+
+    /// The boundary of a leaf.
+    pub(crate) fn boundary(&self, leaf: u32) -> &[PolygonArc] {
+        let leaf = &self.leaves[leaf as usize];
+        &self.arcs[leaf.start as usize..(leaf.start + leaf.len) as usize]
+    }
+
+    /// True if some leaf is open.
+    pub(crate) fn is_open(&self) -> bool {
+        self.link_open(self.root)
+    }
+
+    fn link_open(&self, link: Link) -> bool {
+        match link {
+            Link::Node(node) => self.nodes[node as usize].open,
+            Link::Leaf(leaf) => self.leaves[leaf as usize].state == LeafState::Open,
+        }
+    }
+
+    fn replace(&mut self, parent: Option<u32>, old: Link, new: Link) {
+        match parent {
+            None => self.root = new,
+            Some(parent) => {
+                let node = &mut self.nodes[parent as usize];
+                *(if node.negative == old { &mut node.negative } else { &mut node.positive }) = new;
+            }
+        }
+    }
+
+    /// Gives an open leaf its final state and tells the nodes above.
+    fn close(&mut self, leaf: u32, state: LeafState) {
+        self.leaves[leaf as usize].state = state;
+        let mut above = self.leaves[leaf as usize].parent;
+        while let Some(node) = above {
+            let TreeNode { negative, positive, parent, .. } = self.nodes[node as usize];
+            if self.link_open(negative) || self.link_open(positive) {
+                return;
+            }
+            self.nodes[node as usize].open = false;
+            above = parent;
+        }
+    }
+
+    /// Leaves everything on the other side of `domain` outside.
+    pub(crate) fn clip(&mut self, skeleton: &Skeleton, domain: HalfSphere, work: &mut Workspace) {
+        for leaf in self.open_leaves() {
+            let [inside, outside] = self.cut_leaf(skeleton, leaf, domain, work);
+            debug_assert!(inside.is_some() || outside.is_some());
+            if let Some(outside) = outside {
+                self.close(outside, LeafState::Outside);
+            }
+        }
+    }
+
+    /// The leaves that are open now.
+    pub(crate) fn open_leaves(&self) -> Vec<u32> {
+        (0..self.leaves.len() as u32).filter(|&leaf| self.leaves[leaf as usize].state == LeafState::Open).collect()
+    }
+
+    /// Cuts an open leaf in two; gives the leaves inside and outside of the half sphere. One of them
+    /// is missing if the circle does not meet the leaf's interior.
+    pub(crate) fn cut_leaf(
+        &mut self,
+        skeleton: &Skeleton,
+        leaf: u32,
+        half: HalfSphere,
+        work: &mut Workspace,
+    ) -> [Option<u32>; 2] {
+        let Leaf { start, len, parent, .. } = self.leaves[leaf as usize];
+        work.region.clear();
+        work.region.extend_from_slice(&self.arcs[start as usize..(start + len) as usize]);
+        let sides = work.knife.classify(skeleton, &self.directions, &work.region, half.circle());
+        if let Some(only) = one_side(sides, half.inside()) {
+            return if only == half.inside() { [Some(leaf), None] } else { [None, Some(leaf)] };
+        }
+        work.negative.clear();
+        work.positive.clear();
+        work.knife.cut(
+            skeleton,
+            &mut self.directions,
+            &work.region,
+            half.circle(),
+            |_| None,
+            &mut work.negative,
+            &mut work.positive,
+        );
+        let node = self.nodes.len() as u32;
+        self.replace(parent, Link::Leaf(leaf), Link::Node(node));
+        // The leaf itself becomes the negative child, so that no leaf is ever out of the tree.
+        let positive = self.push_leaf(&work.positive, LeafState::Open, Some(node));
+        let start = self.arcs.len() as u32;
+        self.arcs.extend_from_slice(&work.negative);
+        self.leaves[leaf as usize] =
+            Leaf { state: LeafState::Open, start, len: work.negative.len() as u32, parent: Some(node) };
+        self.nodes.push(TreeNode { circle: half.circle(), negative: Link::Leaf(leaf), positive, parent, open: true });
+        let Link::Leaf(positive) = positive else { return [None, None] };
+        if half.inside().is_positive() { [Some(positive), Some(leaf)] } else { [Some(leaf), Some(positive)] }
+    }
+
+    /// Puts a convex spherical polygon in front of nothing: it fills what is open of its inside.
+    pub(crate) fn insert(
+        &mut self,
+        skeleton: &Skeleton,
+        polygon: &[PolygonArc],
+        fragment: FragmentId,
+        work: &mut Workspace,
+    ) {
+        work.arcs.clear();
+        work.arcs.extend_from_slice(polygon);
+        work.stack.clear();
+        work.stack.push((self.root, 0, polygon.len()));
+        while let Some((link, start, len)) = work.stack.pop() {
+            let node = match link {
+                Link::Leaf(leaf) => {
+                    if self.leaves[leaf as usize].state == LeafState::Open {
+                        self.fill(skeleton, leaf, start..start + len, fragment, work);
+                    }
+                    continue;
+                }
+                Link::Node(node) => &self.nodes[node as usize],
+            };
+            if !node.open {
+                continue;
+            }
+            work.visited += 1;
+            let (circle, negative, positive) = (node.circle, node.negative, node.positive);
+            let part = &work.arcs[start..start + len];
+            let sides = work.knife.classify(skeleton, &self.directions, part, circle);
+            match sides {
+                Sides { negative: false, .. } => work.stack.push((positive, start, len)),
+                Sides { positive: false, .. } => work.stack.push((negative, start, len)),
+                _ => {
+                    work.negative.clear();
+                    work.positive.clear();
+                    work.knife.cut(
+                        skeleton,
+                        &mut self.directions,
+                        part,
+                        circle,
+                        |_| None,
+                        &mut work.negative,
+                        &mut work.positive,
+                    );
+                    for (child, arcs) in [(negative, &work.negative), (positive, &work.positive)] {
+                        if self.link_open(child) {
+                            let start = work.arcs.len();
+                            work.arcs.extend_from_slice(arcs);
+                            work.stack.push((child, start, arcs.len()));
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// Fills the part of an open leaf that a polygon within it covers.
+    ///
+    /// Every side of the polygon that is not on the leaf's boundary becomes a node; what lies outside
+    /// of it stays open.
+    fn fill(
+        &mut self,
+        skeleton: &Skeleton,
+        leaf: u32,
+        polygon: std::ops::Range<usize>,
+        fragment: FragmentId,
+        work: &mut Workspace,
+    ) {
+        let Leaf { start, len, mut parent, .. } = self.leaves[leaf as usize];
+        let mut here = Link::Leaf(leaf);
+        work.region.clear();
+        work.region.extend_from_slice(&self.arcs[start as usize..(start + len) as usize]);
+        for k in polygon.clone() {
+            let side = work.arcs[k];
+            let (circle, inside) = (side.along.circle(), side.along.inside());
+            if work.region.iter().any(|arc| arc.along.circle() == circle) {
+                continue;
+            }
+            let sides = work.knife.classify(skeleton, &self.directions, &work.region, circle);
+            if let Some(only) = one_side(sides, inside) {
+                debug_assert_eq!(only, inside, "the polygon lies in the leaf");
+                continue;
+            }
+            // Where the region's boundary already follows the polygon's neighbouring side, it is
+            // crossed at the polygon's own corner.
+            let previous = work.arcs[if k == polygon.start { polygon.end - 1 } else { k - 1 }];
+            let next = work.arcs[if k + 1 == polygon.end { polygon.start } else { k + 1 }];
+            let known = |arc: PolygonArc| {
+                let circle = arc.along.circle();
+                if circle == previous.along.circle() {
+                    Some(side.from)
+                } else if circle == next.along.circle() {
+                    Some(next.from)
+                } else {
+                    None
+                }
+            };
+            work.negative.clear();
+            work.positive.clear();
+            work.knife.cut(
+                skeleton,
+                &mut self.directions,
+                &work.region,
+                circle,
+                known,
+                &mut work.negative,
+                &mut work.positive,
+            );
+            let node = self.nodes.len() as u32;
+            self.replace(parent, here, Link::Node(node));
+            let (outside, kept) =
+                if inside.is_positive() { (&work.negative, &work.positive) } else { (&work.positive, &work.negative) };
+            let outside = {
+                let start = self.arcs.len() as u32;
+                self.arcs.extend_from_slice(outside);
+                let leaf = Leaf { state: LeafState::Open, start, len: outside.len() as u32, parent: Some(node) };
+                self.leaves.push(leaf);
+                Link::Leaf(self.leaves.len() as u32 - 1)
+            };
+            work.region.clear();
+            work.region.extend_from_slice(kept);
+            here = Link::Leaf(leaf);
+            let (negative, positive) = if inside.is_positive() { (outside, here) } else { (here, outside) };
+            self.nodes.push(TreeNode { circle, negative, positive, parent, open: true });
+            parent = Some(node);
+        }
+        let start = self.arcs.len() as u32;
+        self.arcs.extend_from_slice(&work.arcs[polygon.clone()]);
+        self.leaves[leaf as usize] = Leaf { state: LeafState::Open, start, len: polygon.len() as u32, parent };
+        self.close(leaf, LeafState::Filled(fragment));
+    }
+
+    /// True if nothing in the box can be seen: every leaf that its projection may meet is closed. Errs
+    /// only towards false.
+    pub(crate) fn hides(&self, eye: DVec3, bounds: &Bounds, work: &mut Workspace) -> bool {
+        let center = (bounds.low + bounds.high) * 0.5 - eye;
+        let half = (bounds.high - bounds.low) * 0.5;
+        // Rounding of the four operations, on coordinates of this size, and of the sums below.
+        let size = eye.abs() + bounds.low.abs() + bounds.high.abs();
+        let margin = 16.0 * U * size.element_sum();
+        if !margin.is_finite() {
+            return false;
+        }
+        work.links.clear();
+        work.links.push(self.root);
+        while let Some(link) = work.links.pop() {
+            if !self.link_open(link) {
+                continue;
+            }
+            let Link::Node(node) = link else { return false };
+            let node = &self.nodes[node as usize];
+            let normal = self.directions.normal(node.circle);
+            let height = normal.v.dot(center);
+            let reach = normal.v.abs().dot(half) + 4.0 * margin;
+            // The stored normal is off by `slack / 8` in each component.
+            let reach = reach + normal.slack * (center.abs() + half).element_sum();
+            if height > reach {
+                work.links.push(node.positive);
+            } else if height < -reach {
+                work.links.push(node.negative);
+            } else {
+                work.links.extend([node.negative, node.positive]);
+            }
+        }
+        true
+    }
+}
+
+/// The side that all corners are on or touch, if there is only one; `inside` if they are all on the
+/// circle, which no polygon with an interior is.
+fn one_side(sides: Sides, inside: Sign) -> Option<Sign> {
+    match sides {
+        Sides { negative: true, positive: true } => None,
+        Sides { negative: true, positive: false } => Some(Sign::Negative),
+        Sides { negative: false, positive: true } => Some(Sign::Positive),
+        Sides { negative: false, positive: false } => Some(inside),
+    }
+}
