@@ -4,10 +4,15 @@
 //! exactly planar facets. A polygon that is exactly planar and convex is one piece; any other is
 //! triangulated; a polygon without area has none.
 
+mod assemble;
 mod builder;
+mod facets;
+mod flat;
 mod material;
 mod problem;
 mod triangulate;
+mod validate;
+mod weld;
 
 pub use builder::{FaceSpec, SceneBuilder};
 pub use material::Material;

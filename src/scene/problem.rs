@@ -50,9 +50,22 @@ pub enum SceneProblem {
         /// The number of objects.
         count: usize,
     },
-    /// The boundary crosses itself, or a hole crosses the outer ring.
+    /// The boundary crosses itself or goes around something more than once, or a hole crosses the
+    /// outer ring; seen along the normal, if the polygon is not planar.
     #[error("the boundary of polygon {polygon} crosses itself; split it where it does")]
     SelfCrossing {
+        /// The polygon.
+        polygon: PolygonId,
+    },
+    /// A hole that is not inside of the outer ring.
+    #[error("polygon {polygon} has a hole outside of its outer ring; remove it or make it a polygon")]
+    HoleOutside {
+        /// The polygon.
+        polygon: PolygonId,
+    },
+    /// A boundary that runs over itself very often.
+    #[error("the boundary of polygon {polygon} runs back and forth over itself too often; remove its doubled edges")]
+    Tangled {
         /// The polygon.
         polygon: PolygonId,
     },
@@ -91,6 +104,8 @@ impl SceneProblem {
             | Self::UnknownMaterial { polygon, .. }
             | Self::UnknownObject { polygon, .. }
             | Self::SelfCrossing { polygon }
+            | Self::HoleOutside { polygon }
+            | Self::Tangled { polygon }
             | Self::OutOfRange { polygon, .. } => Some(polygon),
             _ => None,
         }

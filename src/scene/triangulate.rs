@@ -1,1 +1,279 @@
-//! Triangulation of pieces.
+//! Triangulation of polygons in the plane, with holes, on their own vertices only.
+//!
+//! The vertices go into a Delaunay triangulation first, the boundary becomes constraint edges after
+//! that, and a flood from the outside counts how often the boundary winds around every triangle.
+//! All decisions are exact signs. No vertex is ever made: a boundary that would need one crosses
+//! itself and is refused. Vertices and edges go in in a shuffled order (always the same), which makes
+//! the expected time O(n log^2 n) for any ring: Shewchuk and Brown, "Fast segment insertion and
+//! incremental construction of constrained Delaunay triangulations", 2015.
+
+use super::flat::spread;
+use glam::DVec2;
+use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
+use spade::{
+    ConstrainedDelaunayTriangulation, HasPosition, HierarchyHintGenerator, HintGenerator,
+    LastUsedVertexHintGenerator, Point2, Triangulation,
+};
+
+/// Why there is no triangulation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Fault {
+    /// The boundary crosses itself, or goes around something more than once.
+    Crossing,
+    /// A hole is not inside of the outer ring.
+    HoleOutside,
+    /// The coordinates differ by more than [`RANGE`] powers of two.
+    OutOfRange,
+    /// The boundary runs over itself so often that the work would explode.
+    Tangled,
+}
+
+/// The largest ratio of two coordinates (other than 0), as a power of two: exact predicates need
+/// coordinates between 2^-142 and 2^201.
+pub(super) const RANGE: u32 = 342;
+const LEAST: i32 = -142;
+const GREATEST: i32 = 200;
+
+/// From here on, vertices are found with a hierarchy of triangulations.
+const MANY: usize = 64;
+
+/// Triangulates the polygon whose outer ring is `rings[0]` and whose holes are the others, given as
+/// places in `points`.
+///
+/// The triangles run around the way the outer ring does. There are none if the ring has no area.
+/// Points must differ from one another. Rings may touch themselves and one another in vertices and
+/// along edges (a doubled edge is a slit); holes may run either way.
+pub(super) fn triangulate(points: &[DVec2], rings: &[Vec<u32>]) -> Result<Vec<[u32; 3]>, Fault> {
+    let points = scaled(points)?;
+    let space: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
+    let Some(first) = spread(&space) else { return Ok(Vec::new()) };
+    if points.len() < MANY {
+        Mesh::<LastUsedVertexHintGenerator>::build(&points, first, rings)?.triangles()
+    } else {
+        Mesh::<HierarchyHintGenerator<f64>>::build(&points, first, rings)?.triangles()
+    }
+}
+
+/// The points, scaled by a power of two into the range of exact predicates.
+fn scaled(points: &[DVec2]) -> Result<Vec<DVec2>, Fault> {
+    let sizes = || points.iter().flat_map(|p| [p.x.abs(), p.y.abs()]).filter(|&x| x > 0.0);
+    let least = exponent(sizes().fold(f64::INFINITY, f64::min));
+    let greatest = exponent(sizes().fold(0.0, f64::max));
+    if least >= LEAST && greatest <= GREATEST || sizes().next().is_none() {
+        return Ok(points.to_vec());
+    }
+    let shift = GREATEST - greatest;
+    if least + shift < LEAST {
+        return Err(Fault::OutOfRange);
+    }
+    // In two steps: the whole factor may be larger than any number.
+    let (half, rest) = (2.0_f64.powi(shift / 2), 2.0_f64.powi(shift - shift / 2));
+    Ok(points.iter().map(|&p| p * half * rest).collect())
+}
+
+/// The exponent of a positive number: the greatest e with 2^e <= x.
+fn exponent(x: f64) -> i32 {
+    match (x.to_bits() >> 52) as i32 {
+        0 => -1011 - x.to_bits().leading_zeros() as i32,
+        biased => biased - 1023,
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    position: Point2<f64>,
+    index: u32,
+}
+
+impl HasPosition for Corner {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        self.position
+    }
+}
+
+/// How the boundary runs along one edge, or lies around one triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+struct Winding {
+    /// The outer ring, counted with its direction.
+    outer: i32,
+    /// Whether the holes pass an odd number of times.
+    hole: bool,
+}
+
+struct Mesh<L: HintGenerator<f64>> {
+    cdt: ConstrainedDelaunayTriangulation<Corner, (), (), (), L>,
+    /// For every undirected edge what runs along its normal direction.
+    along: Vec<Winding>,
+}
+
+impl<L: HintGenerator<f64>> Mesh<L> {
+    /// Builds the mesh, starting from three vertices that are not collinear (adding to a triangulation
+    /// of collinear vertices takes linear time).
+    fn build(points: &[DVec2], first: [usize; 3], rings: &[Vec<u32>]) -> Result<Self, Fault> {
+        let mut cdt = ConstrainedDelaunayTriangulation::<Corner, (), (), (), L>::default();
+        let mut handles = vec![FixedVertexHandle::from_index(0); points.len()];
+        let mut order: Vec<u32> = (0..points.len() as u32).collect();
+        for (place, vertex) in first.into_iter().enumerate() {
+            order.swap(place, vertex);
+        }
+        shuffle(&mut order[3..]);
+        for index in order {
+            let p = points[index as usize];
+            let corner = Corner { position: Point2::new(p.x, p.y), index };
+            handles[index as usize] = cdt.insert(corner).map_err(|_| Fault::OutOfRange)?;
+        }
+        // Two points in one place: only rounding can do that.
+        if cdt.num_vertices() != points.len() {
+            return Err(Fault::Crossing);
+        }
+        let along = vec![Winding::default(); cdt.num_undirected_edges()];
+        let mut mesh = Self { cdt, along };
+        mesh.add_boundary(&handles, rings)?;
+        Ok(mesh)
+    }
+
+    fn add_boundary(&mut self, handles: &[FixedVertexHandle], rings: &[Vec<u32>]) -> Result<(), Fault> {
+        let mut visits = vec![0_u32; handles.len()];
+        let mut edges = Vec::new();
+        for (ring, outer) in rings.iter().zip(std::iter::once(1).chain(std::iter::repeat(0))) {
+            for (k, &from) in ring.iter().enumerate() {
+                visits[from as usize] += 1;
+                edges.push((from, ring[(k + 1) % ring.len()], Winding { outer, hole: outer == 0 }));
+            }
+        }
+        shuffle(&mut edges);
+        let mut trace = Trace {
+            passed: vec![None; handles.len()],
+            budget: 1024 * edges.len() + 65_536,
+        };
+        for (from, to, run) in edges {
+            // An edge is searched by turning around its first vertex: take the less busy one.
+            let (from, to, outer) = if visits[from as usize] <= visits[to as usize] {
+                (from, to, run.outer)
+            } else {
+                (to, from, -run.outer)
+            };
+            let ends = [handles[from as usize], handles[to as usize]];
+            self.add_edge(ends, Winding { outer, ..run }, &mut trace)?;
+        }
+        Ok(())
+    }
+
+    /// Adds one edge of the boundary; it becomes several if it runs through vertices.
+    fn add_edge(&mut self, [from, to]: [FixedVertexHandle; 2], run: Winding, trace: &mut Trace) -> Result<(), Fault> {
+        let mut at = from;
+        let mut before = None;
+        while at != to {
+            let chain = self.cdt.try_add_constraint(at, to);
+            if chain.is_empty() {
+                return Err(Fault::Crossing);
+            }
+            for edge in chain {
+                trace.budget = trace.budget.checked_sub(1).ok_or(Fault::Tangled)?;
+                let handle = self.cdt.directed_edge(edge);
+                let next = if handle.from().fix() == at { handle.to().fix() } else { handle.from().fix() };
+                if let Some(before) = before {
+                    trace.pass(at, [before, next])?;
+                }
+                let undirected = edge.as_undirected();
+                let forwards = self.cdt.directed_edge(undirected.as_directed()).from().fix() == at;
+                let along = &mut self.along[undirected.index()];
+                along.outer += if forwards { run.outer } else { -run.outer };
+                along.hole ^= run.hole;
+                before = Some(at);
+                at = next;
+            }
+        }
+        Ok(())
+    }
+
+    /// How the boundary lies around each triangle, by index of the face.
+    fn windings(&self) -> Result<Vec<Option<Winding>>, Fault> {
+        let mut windings: Vec<Option<Winding>> = vec![None; self.cdt.num_all_faces()];
+        let outside = self.cdt.outer_face().fix();
+        windings[outside.index()] = Some(Winding::default());
+        let mut pending: Vec<_> = self.cdt.convex_hull().map(|edge| edge.fix()).collect();
+        pending.extend(self.cdt.convex_hull().map(|edge| edge.rev().fix()));
+        while let Some(edge) = pending.pop() {
+            let edge = self.cdt.directed_edge(edge);
+            let Some(here) = windings[edge.face().fix().index()] else { continue };
+            let beyond = edge.rev().face();
+            let along = self.along_directed(edge.fix().as_undirected(), edge.fix().as_undirected().as_directed() == edge.fix());
+            let there = Winding { outer: here.outer - along.outer, hole: here.hole ^ along.hole };
+            match &mut windings[beyond.fix().index()] {
+                Some(known) if *known == there => {}
+                Some(_) => return Err(Fault::Crossing),
+                unknown => {
+                    *unknown = Some(there);
+                    pending.push(edge.rev().next().fix());
+                    pending.push(edge.rev().prev().fix());
+                }
+            }
+        }
+        Ok(windings)
+    }
+
+    fn along_directed(&self, edge: FixedUndirectedEdgeHandle, forwards: bool) -> Winding {
+        let along = self.along[edge.index()];
+        Winding { outer: if forwards { along.outer } else { -along.outer }, ..along }
+    }
+
+    fn triangles(&self) -> Result<Vec<[u32; 3]>, Fault> {
+        let windings = self.windings()?;
+        let mut side = 0;
+        let mut triangles = Vec::new();
+        for face in self.cdt.inner_faces() {
+            let Some(winding) = windings[face.fix().index()] else { continue };
+            if winding.outer == 0 {
+                if winding.hole {
+                    return Err(Fault::HoleOutside);
+                }
+                continue;
+            }
+            if winding.outer.abs() > 1 || winding.outer == -side {
+                return Err(Fault::Crossing);
+            }
+            side = winding.outer;
+            if !winding.hole {
+                triangles.push(face.vertices().map(|corner| corner.data().index));
+            }
+        }
+        if side < 0 {
+            triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+        }
+        Ok(triangles)
+    }
+}
+
+/// What the edges of the boundary have run through so far.
+struct Trace {
+    /// For every vertex the neighbours on the straight edges that run through it.
+    passed: Vec<Option<[FixedVertexHandle; 2]>>,
+    /// How many more pieces of edges are taken.
+    budget: usize,
+}
+
+impl Trace {
+    /// Notes an edge that runs straight through a vertex. Two that do so in different directions cross.
+    fn pass(&mut self, through: FixedVertexHandle, mut neighbours: [FixedVertexHandle; 2]) -> Result<(), Fault> {
+        neighbours.sort_unstable();
+        match self.passed[through.index()].replace(neighbours) {
+            Some(known) if known != neighbours => Err(Fault::Crossing),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Shuffles, always the same way (Fisher and Yates, with the generator `SplitMix64`).
+fn shuffle<T>(items: &mut [T]) {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    for k in (1..items.len()).rev() {
+        state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut bits = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        bits ^= bits >> 31;
+        items.swap(k, (bits % (k as u64 + 1)) as usize);
+    }
+}

@@ -1,0 +1,101 @@
+//! Putting facets together: edges and axis-aligned planes are shared across the scene.
+
+use super::facets::Facets;
+use super::flat::orientation;
+use super::{Axis, Data, EdgeId, FaceSpec, Piece, PlaneId, Polygon, PolygonId, SceneProblem, Shape, Side};
+use super::{SupportingPlane, VertexId};
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// As many of anything as a 32-bit id can name.
+pub(super) const LIMIT: usize = u32::MAX as usize;
+
+/// The next id of something of which there are `count`.
+pub(super) fn next_id(count: usize, what: &'static str) -> Result<u32, SceneProblem> {
+    if count < LIMIT { Ok(count as u32) } else { Err(SceneProblem::TooLarge { what, limit: LIMIT as u64 }) }
+}
+
+/// A scene in the making.
+#[derive(Default)]
+pub(super) struct Assembly {
+    pub(super) data: Data,
+    edges: HashMap<[VertexId; 2], EdgeId>,
+    axis_planes: HashMap<(Axis, u64), PlaneId>,
+}
+
+impl Assembly {
+    /// Starts from the vertices.
+    pub(super) fn new(vertices: Vec<DVec3>) -> Self {
+        Self { data: Data { vertices, ..Data::default() }, ..Self::default() }
+    }
+
+    /// Adds the next polygon with its facets.
+    pub(super) fn add_polygon(&mut self, face: &FaceSpec, rings: Vec<Vec<VertexId>>, facets: Facets) -> Result<(), SceneProblem> {
+        let polygon = PolygonId(next_id(self.data.polygons.len(), "polygons")?);
+        let shape = facets.shape;
+        debug_assert!(shape == Shape::Degenerate || !facets.facets.is_empty());
+        let first = next_id(self.data.pieces.len(), "pieces")?;
+        let shared = facets.plane.map(|corners| self.plane(corners)).transpose()?;
+        for ring in facets.facets {
+            let (plane, facing) = match shared {
+                Some(shared) => shared,
+                None => self.plane([ring[0], ring[1], ring[2]])?,
+            };
+            self.add_piece(polygon, plane, facing, &ring)?;
+        }
+        let pieces = first..self.data.pieces.len() as u32;
+        let (object, material) = (face.object, face.material);
+        self.data.polygons.push(Polygon { object, material, shape, rings, pieces });
+        Ok(())
+    }
+
+    fn add_piece(&mut self, polygon: PolygonId, plane: PlaneId, facing: Side, ring: &[VertexId]) -> Result<(), SceneProblem> {
+        next_id(self.data.pieces.len(), "pieces")?;
+        let start = next_id(self.data.piece_vertices.len(), "corners of pieces")?;
+        for (k, &from) in ring.iter().enumerate() {
+            let edge = self.edge(from, ring[(k + 1) % ring.len()])?;
+            self.data.piece_vertices.push(from);
+            self.data.piece_edges.push(edge);
+        }
+        next_id(self.data.piece_vertices.len(), "corners of pieces")?;
+        self.data.pieces.push(Piece { polygon, plane, facing, start, len: ring.len() as u32 });
+        Ok(())
+    }
+
+    fn edge(&mut self, a: VertexId, b: VertexId) -> Result<EdgeId, SceneProblem> {
+        let ends = [a.min(b), a.max(b)];
+        if let Some(&known) = self.edges.get(&ends) {
+            return Ok(known);
+        }
+        let id = EdgeId(next_id(self.data.edges.len(), "edges")?);
+        self.data.edges.push(ends);
+        self.edges.insert(ends, id);
+        Ok(id)
+    }
+
+    /// The plane through three vertices, which run counter-clockwise seen from the front of the
+    /// facets on it.
+    fn plane(&mut self, corners: [VertexId; 3]) -> Result<(PlaneId, Side), SceneProblem> {
+        let triangle = corners.map(|v| self.data.vertices[v.index()]);
+        let id = next_id(self.data.planes.len(), "planes")?;
+        let Some((axis, value)) = axis_plane(triangle) else {
+            self.data.planes.push(SupportingPlane::Points(corners));
+            return Ok((PlaneId(id), Side::Front));
+        };
+        let id = *self.axis_planes.entry((axis, value.to_bits())).or_insert_with(|| {
+            self.data.planes.push(SupportingPlane::Axis { axis, value });
+            PlaneId(id)
+        });
+        let facing = if orientation(triangle, axis).is_positive() { Side::Front } else { Side::Back };
+        Ok((id, facing))
+    }
+}
+
+/// The axis-aligned plane that a triangle with area lies in, if it does.
+#[expect(clippy::float_cmp, reason = "a plane is axis-aligned if the coordinates are exactly equal")]
+fn axis_plane([a, b, c]: [DVec3; 3]) -> Option<(Axis, f64)> {
+    Axis::ALL.into_iter().find_map(|axis| {
+        let k = axis as usize;
+        (a[k] == b[k] && b[k] == c[k]).then(|| (axis, a[k]))
+    })
+}
