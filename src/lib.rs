@@ -1,4 +1,6 @@
 //! Exact from-point visibility.
 
 pub mod exact;
+pub mod integral;
 pub mod scene;
+pub mod verify;
