@@ -3,4 +3,6 @@
 pub mod bsp;
 pub mod contour;
 pub mod exact;
+pub mod integral;
 pub mod scene;
+pub mod verify;

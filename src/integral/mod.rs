@@ -1,0 +1,18 @@
+//! Integrals over convex spherical polygons: the solid angle and the diffuse form factor.
+//!
+//! A polygon is the list of its vertices as directions from the viewpoint, of any length, with
+//! det[b0, b1, b2] > 0 for consecutive vertices: counter-clockwise seen from outside the unit
+//! sphere, clockwise as the eye sees it. `docs/integrals.md` derives the formulas and tells what
+//! was measured.
+
+mod flux;
+mod form_factor;
+mod solid_angle;
+mod unit;
+
+#[cfg(test)]
+mod tests;
+
+pub use form_factor::{form_factor, form_factor_of_units};
+pub use solid_angle::{solid_angle, solid_angle_of_units};
+pub use unit::UnitDirection;

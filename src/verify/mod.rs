@@ -1,0 +1,1 @@
+//! Verification that shares no predicate with the engine.
