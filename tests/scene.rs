@@ -5,8 +5,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 use nusselt::exact::{Sign, orient3d};
 use nusselt::scene::{
-    Axis, FaceSpec, Material, PolygonId, Scene, SceneError, SceneProblem, Shape, Side,
-    SupportingPlane, VertexId,
+    Axis, FaceSpec, Material, PolygonId, Scene, SceneError, SceneProblem, Shape, Side, SupportingPlane, VertexId,
 };
 use proptest::prelude::*;
 use std::collections::HashMap;
@@ -22,10 +21,7 @@ fn polygon(rings: &[Vec<[f64; 3]>]) -> Result<Scene, SceneError> {
     let mut builder = Scene::builder();
     let object = builder.add_object("default");
     let material = builder.add_material(Material::new("grey"));
-    let rings = rings
-        .iter()
-        .map(|ring| ring.iter().map(|&p| builder.add_vertex(DVec3::from(p))).collect())
-        .collect();
+    let rings = rings.iter().map(|ring| ring.iter().map(|&p| builder.add_vertex(DVec3::from(p))).collect()).collect();
     builder.add_face(FaceSpec { rings, object, material });
     builder.build()
 }
@@ -46,8 +42,7 @@ fn rational(x: f64) -> BigRational {
 
 /// Twice the vector area of a ring, exactly.
 fn area(scene: &Scene, ring: &[VertexId]) -> [BigRational; 3] {
-    let p: Vec<[BigRational; 3]> =
-        ring.iter().map(|&v| scene.vertex(v).to_array().map(rational)).collect();
+    let p: Vec<[BigRational; 3]> = ring.iter().map(|&v| scene.vertex(v).to_array().map(rational)).collect();
     std::array::from_fn(|axis| {
         let (j, k) = ((axis + 1) % 3, (axis + 2) % 3);
         let mut sum = BigRational::zero();
@@ -173,17 +168,20 @@ fn every_problem_is_reported_in_order() {
         builder.add_face(FaceSpec { rings: vec![ring], object, material });
     }
     let problems = builder.build().unwrap_err().problems;
-    assert!(matches!(
-        &problems[..],
-        [
-            SceneProblem::NotFinite { vertex: 4 },
-            SceneProblem::SelfCrossing { polygon: PolygonId(0) },
-            SceneProblem::UnknownVertex { polygon: PolygonId(1), vertex: 9, count: 5 },
-            SceneProblem::TooFewVertices { polygon: PolygonId(2), count: 2 },
-            SceneProblem::UnknownObject { polygon: PolygonId(2), object: 1, count: 1 },
-            SceneProblem::BadMaterial { material: 0, .. },
-        ]
-    ), "{problems:?}");
+    assert!(
+        matches!(
+            &problems[..],
+            [
+                SceneProblem::NotFinite { vertex: 4 },
+                SceneProblem::SelfCrossing { polygon: PolygonId(0) },
+                SceneProblem::UnknownVertex { polygon: PolygonId(1), vertex: 9, count: 5 },
+                SceneProblem::TooFewVertices { polygon: PolygonId(2), count: 2 },
+                SceneProblem::UnknownObject { polygon: PolygonId(2), object: 1, count: 1 },
+                SceneProblem::BadMaterial { material: 0, .. },
+            ]
+        ),
+        "{problems:?}"
+    );
 }
 
 #[test]
@@ -241,9 +239,8 @@ fn holes_that_touch_are_fine_and_holes_that_cross_are_not() {
 
 #[test]
 fn a_keyhole_is_a_hole() {
-    let keyhole = ring(&[
-        [0., 0.], [4., 0.], [4., 4.], [0., 4.], [0., 0.], [1., 1.], [1., 2.], [2., 2.], [2., 1.], [1., 1.],
-    ]);
+    let keyhole =
+        ring(&[[0., 0.], [4., 0.], [4., 4.], [0., 4.], [0., 0.], [1., 1.], [1., 2.], [2., 2.], [2., 1.], [1., 1.]]);
     let scene = flat(&[keyhole]).unwrap();
     check(&scene);
     assert_eq!(scene.piece_count(), 8);
@@ -349,10 +346,8 @@ fn rings_of_a_hundred_thousand_vertices_take_no_time() {
         (0..N).flat_map(|k| [[f64::from(k), 0.0], [f64::from(2 * N - k), 0.0]]).chain([[0.0, 1.0]]).collect();
     assert!(timed("back and forth", || flat(&[back_and_forth])).is_err());
 
-    let circle: Vec<_> = (0..2 * N)
-        .map(|k| f64::from(k) / n * TAU / 2.0)
-        .map(|a| [a.cos(), a.sin(), a.cos() * 1e-9])
-        .collect();
+    let circle: Vec<_> =
+        (0..2 * N).map(|k| f64::from(k) / n * TAU / 2.0).map(|a| [a.cos(), a.sin(), a.cos() * 1e-9]).collect();
     let scene = timed("circle", || polygon(&[circle]).unwrap());
     assert_eq!(scene.piece_count(), scene.vertices().len() - 2);
 

@@ -8,6 +8,7 @@
 mod flux;
 mod form_factor;
 mod solid_angle;
+mod sums;
 mod unit;
 
 #[cfg(test)]
@@ -16,3 +17,5 @@ mod tests;
 pub use form_factor::{form_factor, form_factor_of_units};
 pub use solid_angle::{solid_angle, solid_angle_of_units};
 pub use unit::UnitDirection;
+
+pub use sums::{PolygonSum, Sums};

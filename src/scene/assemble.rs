@@ -30,7 +30,12 @@ impl Assembly {
     }
 
     /// Adds the next polygon with its facets.
-    pub(super) fn add_polygon(&mut self, face: &FaceSpec, rings: Vec<Vec<VertexId>>, facets: Facets) -> Result<(), SceneProblem> {
+    pub(super) fn add_polygon(
+        &mut self,
+        face: &FaceSpec,
+        rings: Vec<Vec<VertexId>>,
+        facets: Facets,
+    ) -> Result<(), SceneProblem> {
         let polygon = PolygonId(next_id(self.data.polygons.len(), "polygons")?);
         let shape = facets.shape;
         debug_assert!(shape == Shape::Degenerate || !facets.facets.is_empty());
@@ -49,7 +54,13 @@ impl Assembly {
         Ok(())
     }
 
-    fn add_piece(&mut self, polygon: PolygonId, plane: PlaneId, facing: Side, ring: &[VertexId]) -> Result<(), SceneProblem> {
+    fn add_piece(
+        &mut self,
+        polygon: PolygonId,
+        plane: PlaneId,
+        facing: Side,
+        ring: &[VertexId],
+    ) -> Result<(), SceneProblem> {
         next_id(self.data.pieces.len(), "pieces")?;
         let start = next_id(self.data.piece_vertices.len(), "corners of pieces")?;
         for (k, &from) in ring.iter().enumerate() {

@@ -121,11 +121,8 @@ impl SceneBuilder {
 
     /// Builds all sound polygons and notes what is wrong with the others.
     fn assemble(&self, problems: &mut Vec<SceneProblem>) -> Data {
-        let counts = Counts {
-            vertices: self.vertices.len(),
-            objects: self.objects.len(),
-            materials: self.materials.len(),
-        };
+        let counts =
+            Counts { vertices: self.vertices.len(), objects: self.objects.len(), materials: self.materials.len() };
         if let Err(problem) = next_id(counts.vertices, "vertices") {
             problems.push(problem);
             return Data::default();

@@ -58,7 +58,12 @@ pub(super) fn facets(rings: &[Vec<VertexId>], vertices: &[DVec3]) -> Result<Face
 }
 
 /// Triangulates a polygon that is not exactly planar.
-fn warped(rings: &[Vec<VertexId>], outline: &[DVec3], triangle: [DVec3; 3], vertices: &[DVec3]) -> Result<Facets, Fault> {
+fn warped(
+    rings: &[Vec<VertexId>],
+    outline: &[DVec3],
+    triangle: [DVec3; 3],
+    vertices: &[DVec3],
+) -> Result<Facets, Fault> {
     let position = |v: VertexId| vertices[v.index()];
     let mut normal = newell_normal(outline);
     if normal.length_squared() < 1e-28 {
@@ -74,8 +79,7 @@ fn warped(rings: &[Vec<VertexId>], outline: &[DVec3], triangle: [DVec3; 3], vert
             _ => other?,
         },
     };
-    let facets: Vec<_> =
-        triangles.into_iter().filter(|t| !collinear(t.map(position))).map(Vec::from).collect();
+    let facets: Vec<_> = triangles.into_iter().filter(|t| !collinear(t.map(position))).map(Vec::from).collect();
     if facets.is_empty() {
         return Ok(Facets::none());
     }

@@ -152,7 +152,8 @@ mod tests {
         let square = [[0., 0.], [1., 0.], [1., 1.], [0., 1.]];
         let twice: Vec<_> = square.iter().chain(&square).copied().collect();
         assert!(!is_convex(&ring(&twice), Axis::Z), "going around twice");
-        let star: Vec<_> = (0..5).map(|k| f64::from(k) * 0.8 * std::f64::consts::PI).map(|a| [a.cos(), a.sin()]).collect();
+        let star: Vec<_> =
+            (0..5).map(|k| f64::from(k) * 0.8 * std::f64::consts::PI).map(|a| [a.cos(), a.sin()]).collect();
         assert!(!is_convex(&ring(&star), Axis::Z), "pentagram");
     }
 

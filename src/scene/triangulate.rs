@@ -11,8 +11,8 @@ use super::flat::spread;
 use glam::DVec2;
 use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
 use spade::{
-    ConstrainedDelaunayTriangulation, HasPosition, HierarchyHintGenerator, HintGenerator,
-    LastUsedVertexHintGenerator, Point2, Triangulation,
+    ConstrainedDelaunayTriangulation, HasPosition, HierarchyHintGenerator, HintGenerator, LastUsedVertexHintGenerator,
+    Point2, Triangulation,
 };
 
 /// Why there is no triangulation.
@@ -144,10 +144,7 @@ impl<L: HintGenerator<f64>> Mesh<L> {
             }
         }
         shuffle(&mut edges);
-        let mut trace = Trace {
-            passed: vec![None; handles.len()],
-            budget: 1024 * edges.len() + 65_536,
-        };
+        let mut trace = Trace { passed: vec![None; handles.len()], budget: 1024 * edges.len() + 65_536 };
         for (from, to, run) in edges {
             // An edge is searched by turning around its first vertex: take the less busy one.
             let (from, to, outer) = if visits[from as usize] <= visits[to as usize] {
@@ -200,7 +197,8 @@ impl<L: HintGenerator<f64>> Mesh<L> {
             let edge = self.cdt.directed_edge(edge);
             let Some(here) = windings[edge.face().fix().index()] else { continue };
             let beyond = edge.rev().face();
-            let along = self.along_directed(edge.fix().as_undirected(), edge.fix().as_undirected().as_directed() == edge.fix());
+            let along =
+                self.along_directed(edge.fix().as_undirected(), edge.fix().as_undirected().as_directed() == edge.fix());
             let there = Winding { outer: here.outer - along.outer, hole: here.hole ^ along.hole };
             match &mut windings[beyond.fix().index()] {
                 Some(known) if *known == there => {}

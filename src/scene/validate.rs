@@ -18,7 +18,12 @@ pub(super) struct Counts {
 }
 
 /// Checks the indices of a face; true if its rings are sound.
-pub(super) fn check_face(polygon: PolygonId, face: &FaceSpec, counts: Counts, problems: &mut Vec<SceneProblem>) -> bool {
+pub(super) fn check_face(
+    polygon: PolygonId,
+    face: &FaceSpec,
+    counts: Counts,
+    problems: &mut Vec<SceneProblem>,
+) -> bool {
     let before = problems.len();
     if face.rings.is_empty() {
         problems.push(SceneProblem::TooFewVertices { polygon, count: 0 });

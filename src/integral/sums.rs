@@ -1,0 +1,101 @@
+//! Solid angles and form factors of what a contour image shows.
+
+use super::{form_factor, solid_angle};
+use crate::contour::{Cell, ContourImage};
+use crate::scene::{PolygonId, Side};
+use glam::DVec3;
+
+/// A quantity of a [`ContourImage`] summed over the cells of each polygon.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sums {
+    /// The visible polygons, by ascending number.
+    pub polygons: Vec<PolygonSum>,
+    /// Over directions in which nothing is seen.
+    pub background: f64,
+}
+
+/// A quantity of one polygon, apart for its two sides.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PolygonSum {
+    /// The polygon.
+    pub polygon: PolygonId,
+    /// Where its front is seen.
+    pub front: f64,
+    /// Where its back is seen.
+    pub back: f64,
+}
+
+impl PolygonSum {
+    /// Whichever side is seen.
+    pub fn both(self) -> f64 {
+        self.front + self.back
+    }
+}
+
+impl Sums {
+    /// The quantity of one polygon, whichever side is seen; 0 if it is not visible.
+    pub fn of(&self, polygon: PolygonId) -> f64 {
+        let found = self.polygons.binary_search_by_key(&polygon, |sum| sum.polygon);
+        found.map_or(0.0, |k| self.polygons[k].both())
+    }
+
+    /// Over all polygons and the background.
+    pub fn total(&self) -> f64 {
+        self.polygons.iter().map(|sum| sum.both()).sum::<f64>() + self.background
+    }
+}
+
+impl ContourImage {
+    /// The solid angle in which each polygon is seen, in steradians; they sum to that of the domain.
+    pub fn solid_angles(&self) -> Sums {
+        self.sums(|corners| solid_angle(corners))
+    }
+
+    /// The form factor from the viewpoint (a differential element with the domain's normal) to each
+    /// polygon: the share of diffusely emitted energy that arrives there. They sum to 1 with the
+    /// background. `None` if the domain has no normal.
+    pub fn form_factors(&self) -> Option<Sums> {
+        let normal = self.normal()?;
+        Some(self.sums(|corners| form_factor(corners, normal)))
+    }
+
+    fn sums(&self, measure: impl Fn(&[DVec3]) -> f64) -> Sums {
+        let mut background = 0.0;
+        let mut values = Vec::with_capacity(self.cell_count());
+        let mut corners = Vec::new();
+        for cell in self.cells() {
+            corners.clear();
+            corners.extend(cell.boundary());
+            let value = measure(&corners);
+            match (cell.polygon(), cell.side()) {
+                (Some(polygon), Some(side)) => values.push((polygon, side, value)),
+                _ => background += value,
+            }
+        }
+        // Stable: the cells of a polygon are added in their order.
+        values.sort_by_key(|&(polygon, ..)| polygon);
+        let mut polygons: Vec<PolygonSum> = Vec::new();
+        for (polygon, side, value) in values {
+            if polygons.last().is_none_or(|last| last.polygon != polygon) {
+                polygons.push(PolygonSum { polygon, front: 0.0, back: 0.0 });
+            }
+            if let Some(last) = polygons.last_mut() {
+                *(if side == Side::Front { &mut last.front } else { &mut last.back }) += value;
+            }
+        }
+        Sums { polygons, background }
+    }
+}
+
+impl Cell<'_> {
+    /// Its solid angle in steradians; never negative.
+    pub fn solid_angle(self) -> f64 {
+        solid_angle(&self.boundary().collect::<Vec<_>>())
+    }
+
+    /// Its form factor; `None` if the domain has no normal. Never negative.
+    pub fn form_factor(self) -> Option<f64> {
+        let normal = self.image().normal()?;
+        Some(form_factor(&self.boundary().collect::<Vec<_>>(), normal))
+    }
+}
