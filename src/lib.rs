@@ -1,4 +1,5 @@
 //! Exact from-point visibility.
 
 pub mod exact;
+pub mod samples;
 pub mod scene;
