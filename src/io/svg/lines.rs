@@ -1,0 +1,122 @@
+//! What is drawn over the colours: outlines, the contour tree, its legend.
+
+use super::{Canvas, PathData};
+use crate::contour::{Cell, ContourImage, Location, Splitter};
+use crate::scene::{PolygonId, VertexId};
+use glam::{DVec2, DVec3};
+use std::collections::HashSet;
+use std::io::{self, Write};
+
+pub(super) const STYLE: &str = "\
+.outline,.given,.edge,.crease,.horizon,.border{fill:none;stroke-linecap:round;stroke-linejoin:round}
+.outline{stroke:#222;stroke-width:.7}
+.border{stroke:#222;stroke-width:1.2}
+.given{stroke:#1f6fd0;stroke-width:.8;stroke-dasharray:5 3}
+.edge{stroke:#c62828;stroke-width:.6}
+.crease{stroke:#1b8a3a;stroke-width:1;stroke-dasharray:2 2}
+.horizon{stroke:#7b1fa2;stroke-width:2.4}
+.legend{font:13px sans-serif;fill:#222}
+";
+
+/// How the kinds of splitters are called: class and words.
+const KINDS: [(&str, &str); 4] = [
+    ("given", "quadtree, or a free horizon"),
+    ("edge", "edge of a polygon"),
+    ("crease", "crease of two planes"),
+    ("horizon", "horizon of a surface"),
+];
+
+fn kind(splitter: &Splitter) -> usize {
+    match splitter {
+        Splitter::Given(_) => 0,
+        Splitter::Edge(_) => 1,
+        Splitter::Crease(_) => 2,
+        Splitter::Parallel(_) => 3,
+    }
+}
+
+/// Lines where another polygon begins.
+pub(super) fn outlines(image: &ContourImage, canvas: &Canvas<'_>, out: &mut impl Write) -> io::Result<()> {
+    let own = own_edges(image);
+    let mut data = PathData::default();
+    for cell in image.cells() {
+        let Some(polygon) = cell.polygon() else { continue };
+        let corners: Vec<DVec3> = cell.boundary().collect();
+        for (k, (splitter, _)) in cell.splitters().enumerate() {
+            let ends = [corners[k], corners[(k + 1) % corners.len()]];
+            let ends_here = match splitter {
+                Splitter::Edge(edge) => own.contains(&(polygon, edge)),
+                Splitter::Crease(_) => differs_across(cell, ends),
+                Splitter::Given(_) | Splitter::Parallel(_) => false,
+            };
+            if ends_here {
+                add_arc(canvas, ends, &mut data);
+            }
+        }
+    }
+    write_path("outline", &data, out)
+}
+
+fn add_arc(canvas: &Canvas<'_>, ends: [DVec3; 2], data: &mut PathData) {
+    for line in canvas.projector.arc(ends, canvas.tolerance()) {
+        data.add(line.into_iter().map(|p| canvas.place(p)), false);
+    }
+}
+
+fn write_path(class: &str, data: &PathData, out: &mut impl Write) -> io::Result<()> {
+    if data.is_empty() { Ok(()) } else { writeln!(out, r#"<path class="{class}" d="{data}"/>"#) }
+}
+
+/// The edges of all visible polygons' rings, without the diagonals of triangulations: beyond them the
+/// polygon is not seen.
+fn own_edges(image: &ContourImage) -> HashSet<(PolygonId, [VertexId; 2])> {
+    let scene = image.bsp().scene();
+    let visible: HashSet<PolygonId> = image.cells().filter_map(|cell| cell.polygon()).collect();
+    let edges = visible.into_iter().flat_map(|id| {
+        scene.polygon(id).rings().iter().flat_map(move |ring| {
+            let next = ring.iter().cycle().skip(1);
+            ring.iter().zip(next).map(move |(&a, &b)| (id, [a.min(b), a.max(b)]))
+        })
+    });
+    edges.collect()
+}
+
+/// Whether another polygon is seen just across the middle of a side.
+fn differs_across(cell: Cell<'_>, [a, b]: [DVec3; 2]) -> bool {
+    let outwards = b.cross(a).normalize_or_zero();
+    let across = (a + b).normalize_or_zero() + outwards * 1e-7;
+    match cell.image().locate(across) {
+        Location::Cell(other) => cell.image().cell(other).polygon() != cell.polygon(),
+        Location::Boundary | Location::Outside => false,
+    }
+}
+
+/// The arcs of the contour tree, a path for every kind of splitter.
+pub(super) fn tree(image: &ContourImage, canvas: &Canvas<'_>, out: &mut impl Write) -> io::Result<()> {
+    let mut data: [PathData; 4] = Default::default();
+    for arc in image.tree_arcs() {
+        add_arc(canvas, arc.ends, &mut data[kind(&arc.splitter)]);
+    }
+    writeln!(out, r#"<g id="tree">"#)?;
+    for ((class, _), data) in KINDS.iter().zip(&data) {
+        write_path(class, data, out)?;
+    }
+    writeln!(out, "</g>")
+}
+
+/// A row of samples of the lines of [`tree`].
+pub(super) fn legend(at: DVec2, out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, r#"<g id="legend">"#)?;
+    for (k, (class, words)) in KINDS.iter().enumerate() {
+        let x = at.x + 235.0 * k as f64;
+        writeln!(
+            out,
+            r#"<path class="{class}" d="M{x},{y} {},{y}"/><text class="legend" x="{}" y="{}">{words}</text>"#,
+            x + 30.0,
+            x + 38.0,
+            at.y + 4.0,
+            y = at.y
+        )?;
+    }
+    writeln!(out, "</g>")
+}
