@@ -147,3 +147,68 @@ impl Ball {
 const MARGIN: f64 = f64::from_bits((1023 - 40) << 52);
 const TINY: f64 = f64::from_bits((1023 - 400) << 52);
 const SAFE: std::ops::Range<f64> = TINY..f64::from_bits((1023 + 400) << 52);
+
+#[cfg(test)]
+mod tests {
+    use super::{Ball, Depth, Estimate};
+    use glam::DVec3;
+    use num_rational::BigRational;
+    use num_traits::Signed;
+    use proptest::prelude::*;
+
+    fn exact(x: f64) -> BigRational {
+        BigRational::from_float(x).unwrap()
+    }
+
+    fn difference(a: DVec3, b: DVec3) -> [BigRational; 3] {
+        std::array::from_fn(|k| exact(a[k]) - exact(b[k]))
+    }
+
+    fn determinant([a, b, c]: [[BigRational; 3]; 3]) -> BigRational {
+        let minor = |i: usize, j: usize| &b[i] * &c[j] - &b[j] * &c[i];
+        &a[0] * minor(1, 2) + &a[1] * minor(2, 0) + &a[2] * minor(0, 1)
+    }
+
+    /// Vectors with components from all over the range of exponents, or close to one another.
+    fn vectors() -> impl Strategy<Value = [DVec3; 4]> {
+        let wild = (-1.0..1.0_f64, -1074..1023_i32).prop_map(|(x, e)| x * 2_f64.powi(e));
+        let tame = (0..64_u32, -1000..1000_i32)
+            .prop_map(|(ulps, e)| (1.0 + f64::from(ulps) * f64::EPSILON) * 2_f64.powi(e / 997));
+        let coordinate = prop_oneof![wild, tame.clone(), tame];
+        prop::array::uniform4(prop::array::uniform3(coordinate).prop_map(DVec3::from))
+    }
+
+    proptest! {
+        #[test]
+        fn determinants_are_within_their_error([a, b, c, d] in vectors()) {
+            let estimate = Estimate::determinant(a - d, b - d, c);
+            if estimate.error.is_finite() {
+                let truth = determinant([difference(a, d), difference(b, d), difference(c, DVec3::ZERO)]);
+                prop_assert!((truth - exact(estimate.value)).abs() <= exact(estimate.error));
+            }
+        }
+
+        #[test]
+        fn depths_are_within_their_interval([a, b, c, e] in vectors(), direction in vectors()) {
+            let direction = direction[0];
+            let depth = Depth::new(
+                Estimate::determinant(b - a, c - a, e - a),
+                Estimate::determinant(b - a, c - a, direction),
+            );
+            let [height, rate] = [difference(e, a), difference(direction, DVec3::ZERO)]
+                .map(|last| determinant([difference(b, a), difference(c, a), last]).abs());
+            prop_assert!(exact(depth.low) * &rate <= height);
+            prop_assert!(depth.high.is_infinite() || exact(depth.high) * rate >= height);
+        }
+
+        #[test]
+        fn missed_balls_hold_no_point_of_the_ray(points in vectors(), eye in vectors(), t in 0.0..4.0_f64) {
+            // The ray goes through a point of the piece at t = 1, exactly.
+            let [eye, aim] = [eye[0], points[0]];
+            let direction = aim - eye;
+            let is_exact = difference(aim, eye) == difference(direction, DVec3::ZERO);
+            let missed = Ball::around(&points).is_missed(eye, direction, direction.length_squared(), t);
+            prop_assert!(!missed || !is_exact || t < 1.0);
+        }
+    }
+}
