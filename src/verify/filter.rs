@@ -174,8 +174,11 @@ mod tests {
         let wild = (-1.0..1.0_f64, -1074..1023_i32).prop_map(|(x, e)| x * 2_f64.powi(e));
         let tame = (0..64_u32, -1000..1000_i32)
             .prop_map(|(ulps, e)| (1.0 + f64::from(ulps) * f64::EPSILON) * 2_f64.powi(e / 997));
-        let coordinate = prop_oneof![wild, tame.clone(), tame];
-        prop::array::uniform4(prop::array::uniform3(coordinate).prop_map(DVec3::from))
+        let of = |coordinate| prop::array::uniform4(prop::array::uniform3(coordinate).prop_map(DVec3::from));
+        // Where products of two or of three components underflow.
+        let sinking = (of((-1.0..1.0_f64).boxed()), prop_oneof![-360..-350_i32, -540..-530_i32])
+            .prop_map(|(vectors, e)| vectors.map(|v| v * 2_f64.powi(e)));
+        prop_oneof![2 => of(prop_oneof![wild, tame.clone(), tame].boxed()), 1 => sinking]
     }
 
     proptest! {
