@@ -95,7 +95,7 @@ impl<'a> FragmentRef<'a> {
         tree.sides[self.fragment().range()].iter().map(move |side| tree.skeleton.approx_point(side.point).position)
     }
 
-    fn fragment(self) -> super::fragment::Fragment {
+    fn fragment(self) -> Fragment {
         self.tree.fragments[self.id.index()]
     }
 }

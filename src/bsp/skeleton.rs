@@ -130,10 +130,6 @@ impl Skeleton {
         self.planes[id.index()]
     }
 
-    pub(crate) fn plane_count(&self) -> usize {
-        self.planes.len()
-    }
-
     pub(crate) fn vertex(&self, id: VertexId) -> DVec3 {
         self.vertices[id.index()]
     }
@@ -194,8 +190,9 @@ impl Skeleton {
         &mut self,
         line: LineId,
         plane: PlaneId,
-        [from, to]: [PointId; 2],
+        ends: [PointId; 2],
         crease: LineId,
+        arena: &mut Arena,
     ) -> PointId {
         let def = match self.line(line) {
             LineDef::Edge(edge) => PointDef::EdgePlane(edge, plane),
@@ -207,14 +204,20 @@ impl Skeleton {
         };
         let id = match self.constructed_ids.get(&def) {
             Some(&id) => id,
-            None => self.push_constructed(def, plane, [from, to]),
+            None => self.push_constructed(def, plane, ends, arena),
         };
         self.note_incidence(id, line);
         self.note_incidence(id, crease);
         id
     }
 
-    fn push_constructed(&mut self, def: PointDef, plane: PlaneId, [from, to]: [PointId; 2]) -> PointId {
+    fn push_constructed(
+        &mut self,
+        def: PointDef,
+        plane: PlaneId,
+        [from, to]: [PointId; 2],
+        arena: &mut Arena,
+    ) -> PointId {
         let id = PointId(self.approx_points.len() as u32);
         // On an edge of the scene interpolate between its exact ends.
         let [from, to] = match def {
@@ -222,6 +225,14 @@ impl Skeleton {
             _ => [from, to].map(|p| self.approx_point(p)),
         };
         let mut approx = interpolate(from, to, self.height(plane, from), self.height(plane, to));
+        let poor = 1e-13 * (from.position.abs() + to.position.abs());
+        if !approx.err.cmple(poor).all() {
+            let mark = arena.mark();
+            let (x, w) = self.exact_point(&self.frame, arena, def);
+            let (position, err) = self.frame.position(arena, x, w);
+            approx = ApproxPoint { position, err };
+            arena.release(mark);
+        }
         let pinned = match &def {
             PointDef::Planes(planes) => planes.as_slice(),
             _ => std::slice::from_ref(&plane),

@@ -66,7 +66,7 @@ impl Splitter {
     }
 
     /// Cuts a fragment whose exact signs are in `self.signs`.
-    fn cut(&self, skeleton: &mut Skeleton, sides: &[FragmentSide], own: PlaneId, plane: PlaneId) -> Placement {
+    fn cut(&mut self, skeleton: &mut Skeleton, sides: &[FragmentSide], own: PlaneId, plane: PlaneId) -> Placement {
         let crease = skeleton.crease(own, plane);
         let (mut back, mut front) = (Vec::with_capacity(sides.len() + 1), Vec::with_capacity(sides.len() + 1));
         for (k, &side) in sides.iter().enumerate() {
@@ -84,7 +84,8 @@ impl Splitter {
                 }
             }
             if here * there == Sign::Negative {
-                let point = skeleton.crossing(side.line, plane, [side.point, sides[next].point], crease);
+                let point =
+                    skeleton.crossing(side.line, plane, [side.point, sides[next].point], crease, &mut self.arena);
                 let rest = FragmentSide { point, ..side };
                 if here.is_positive() {
                     front.push(along_cut(point, true));

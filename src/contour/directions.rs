@@ -44,9 +44,6 @@ enum DirectionDef {
     Crossing { circles: [CircleId; 2], reversed: bool },
 }
 
-/// Directions whose bound on the error of a component is above this are computed from integers.
-const REFINE_ABOVE: f64 = 1e-13;
-
 /// All great circles and directions of one view.
 #[derive(Clone, Debug)]
 pub(crate) struct Directions {
@@ -70,6 +67,12 @@ pub(crate) struct ExactCache {
     pub(crate) integer: u64,
 }
 
+impl ExactCache {
+    fn rounded(&self, exact: Num3) -> Approx3 {
+        Approx3::known(self.arena.direction(exact), 4.0 * U)
+    }
+}
+
 impl Directions {
     pub(crate) fn new(skeleton: &Skeleton, eye: DVec3) -> Self {
         Self {
@@ -82,33 +85,50 @@ impl Directions {
         }
     }
 
-    pub(crate) fn circle_count(&self) -> usize {
-        self.circles.len()
-    }
-
-    fn push_circle(&mut self, def: CircleDef, normal: Approx3) -> CircleId {
+    fn push_circle(
+        &mut self,
+        skeleton: &Skeleton,
+        def: CircleDef,
+        normal: Approx3,
+        cache: &mut ExactCache,
+    ) -> CircleId {
+        let id = CircleId(self.circles.len() as u32);
         self.circles.push(def);
-        self.normals.push(normal);
-        CircleId(self.circles.len() as u32 - 1)
+        let refined = normal.is_poor().then(|| self.exact_normal(skeleton, id, cache));
+        self.normals.push(refined.map_or(normal, |exact| cache.rounded(exact)));
+        id
     }
 
-    pub(crate) fn push_line(&mut self, skeleton: &Skeleton, line: LineId) -> CircleId {
-        self.push_circle(CircleDef::Line(line), skeleton.approx_line_normal(self.eye, line))
+    pub(crate) fn push_line(&mut self, skeleton: &Skeleton, line: LineId, cache: &mut ExactCache) -> CircleId {
+        self.push_circle(skeleton, CircleDef::Line(line), skeleton.approx_line_normal(self.eye, line), cache)
     }
 
-    pub(crate) fn push_given(&mut self, normal: DVec3) -> CircleId {
-        self.push_circle(CircleDef::Given(normal), Approx3::given(normal))
+    pub(crate) fn push_given(&mut self, skeleton: &Skeleton, normal: DVec3, cache: &mut ExactCache) -> CircleId {
+        self.push_circle(skeleton, CircleDef::Given(normal), Approx3::given(normal), cache)
     }
 
-    pub(crate) fn push_parallel(&mut self, skeleton: &Skeleton, plane: PlaneId) -> CircleId {
-        self.push_circle(CircleDef::Parallel(plane), skeleton.approx_normal(plane))
+    pub(crate) fn push_parallel(&mut self, skeleton: &Skeleton, plane: PlaneId, cache: &mut ExactCache) -> CircleId {
+        self.push_circle(skeleton, CircleDef::Parallel(plane), skeleton.approx_normal(plane), cache)
     }
 
-    pub(crate) fn push_point(&mut self, skeleton: &Skeleton, point: PointId) -> DirectionId {
+    fn push_direction(
+        &mut self,
+        skeleton: &Skeleton,
+        def: DirectionDef,
+        approx: Approx3,
+        cache: &mut ExactCache,
+    ) -> DirectionId {
+        let id = DirectionId(self.definitions.len() as u32);
+        self.definitions.push(def);
+        let refined = approx.is_poor().then(|| self.exact_direction(skeleton, id, cache));
+        self.approx.push(refined.map_or(approx, |exact| cache.rounded(exact)));
+        id
+    }
+
+    pub(crate) fn push_point(&mut self, skeleton: &Skeleton, point: PointId, cache: &mut ExactCache) -> DirectionId {
         let approx = skeleton.approx_point(point);
-        self.definitions.push(DirectionDef::Point(point));
-        self.approx.push(Approx3::direction(self.eye, approx.position, approx.err.max_element()));
-        DirectionId(self.definitions.len() as u32 - 1)
+        let approx = Approx3::direction(self.eye, approx.position, approx.err.max_element());
+        self.push_direction(skeleton, DirectionDef::Point(point), approx, cache)
     }
 
     /// The direction `n_1 x n_2`, or the opposite one.
@@ -120,16 +140,8 @@ impl Directions {
         cache: &mut ExactCache,
     ) -> DirectionId {
         let [m, n] = circles.map(|c| &self.normals[c.0 as usize]);
-        let sign = if reversed { Sign::Negative } else { Sign::Positive };
-        let mut approx = m.cross(*n).times_sign(sign);
-        self.definitions.push(DirectionDef::Crossing { circles, reversed });
-        let id = DirectionId(self.definitions.len() as u32 - 1);
-        if approx.error_bound() > REFINE_ABOVE {
-            let exact = self.exact_direction(skeleton, id, cache);
-            approx = Approx3::known(cache.arena.direction(exact), 8.0 * U);
-        }
-        self.approx.push(approx);
-        id
+        let approx = if reversed { n.cross(*m) } else { m.cross(*n) };
+        self.push_direction(skeleton, DirectionDef::Crossing { circles, reversed }, approx, cache)
     }
 
     /// On which side of the great circle the direction lies, exactly.

@@ -17,6 +17,9 @@ mod tree;
 mod view;
 mod viewpoint;
 
+#[cfg(test)]
+mod tests;
+
 pub use directions::Splitter;
 pub use domain::Domain;
 pub use image::{Cell, CellId, ContourImage, TreeArc};

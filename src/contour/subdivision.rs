@@ -29,11 +29,20 @@ struct Circles {
 
 impl Circles {
     /// The half sphere `normal . d >= 0`; opposite normals share their circle.
-    fn half_sphere(&mut self, tree: &mut ContourTree, normal: DVec3) -> HalfSphere {
+    fn half_sphere(
+        &mut self,
+        tree: &mut ContourTree,
+        skeleton: &Skeleton,
+        normal: DVec3,
+        work: &mut Workspace,
+    ) -> HalfSphere {
         let flip = normal.to_array().into_iter().find(|&x| x != 0.0).is_some_and(|x| x < 0.0);
         let canonical = if flip { -normal } else { normal } + DVec3::ZERO;
         let key = canonical.to_array().map(f64::to_bits);
-        let circle = *self.known.entry(key).or_insert_with(|| tree.directions.push_given(canonical));
+        let circle = *self
+            .known
+            .entry(key)
+            .or_insert_with(|| tree.directions.push_given(skeleton, canonical, &mut work.knife.cache));
         HalfSphere::new(circle, if flip { Sign::Negative } else { Sign::Positive })
     }
 }
@@ -50,11 +59,11 @@ pub(crate) fn subdivide(tree: &mut ContourTree, skeleton: &Skeleton, depth: u32,
         let signs = octant_of(tree, leaf);
         let unit = |axis: usize| DVec3::AXES[axis] * signs[axis];
         // The face of x against y, then the winner against z.
-        let half = circles.half_sphere(tree, unit(0) - unit(1));
+        let half = circles.half_sphere(tree, skeleton, unit(0) - unit(1), work);
         let sides = tree.cut_leaf(skeleton, leaf, half, work);
         for (axis, side) in [0, 1].into_iter().zip(sides) {
             let Some(side) = side else { continue };
-            let half = circles.half_sphere(tree, unit(axis) - unit(2));
+            let half = circles.half_sphere(tree, skeleton, unit(axis) - unit(2), work);
             let faces = tree.cut_leaf(skeleton, side, half, work);
             for (axis, leaf) in [axis, 2].into_iter().zip(faces) {
                 let square = Square { axis, signs, low: [0.0; 2], high: [1.0; 2] };
@@ -71,7 +80,7 @@ pub(crate) fn subdivide(tree: &mut ContourTree, skeleton: &Skeleton, depth: u32,
                 let mut normal = DVec3::ZERO;
                 normal[axis] = square.signs[axis];
                 normal[square.axis] = -middle * square.signs[square.axis];
-                let half = circles.half_sphere(tree, normal);
+                let half = circles.half_sphere(tree, skeleton, normal, work);
                 let [above, below] = tree.cut_leaf(skeleton, leaf, half, work);
                 let (mut upper, mut lower) = (square, square);
                 upper.low[direction] = middle;

@@ -71,7 +71,7 @@ pub(crate) struct Workspace {
 impl ContourTree {
     /// The whole sphere, cut into octants by the coordinate planes.
     pub(crate) fn octants(skeleton: &Skeleton, mut directions: Directions, knife: &mut Knife) -> Self {
-        let planes = DVec3::AXES.map(|n| directions.push_given(n));
+        let planes = DVec3::AXES.map(|n| directions.push_given(skeleton, n, &mut knife.cache));
         let mut poles = [[DirectionId(0); 2]; 3];
         for (axis, pole) in poles.iter_mut().enumerate() {
             let circles = [planes[(axis + 1) % 3], planes[(axis + 2) % 3]];

@@ -1,6 +1,6 @@
 //! Making a contour image: the walk through the 3D BSP and what it puts into the contour tree.
 
-use super::directions::{CircleId, DirectionId, Directions};
+use super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use super::domain::Domain;
 use super::image::ContourImage;
 use super::polygon::{HalfSphere, PolygonArc};
@@ -93,7 +93,7 @@ impl SceneBsp {
         let mut work = Workspace::default();
         let directions = Directions::new(&tree.skeleton, eye);
         let mut contour = ContourTree::octants(&tree.skeleton, directions, &mut work.knife);
-        if let Some(horizon) = horizon(tree, viewpoint, domain, &mut contour.directions)? {
+        if let Some(horizon) = horizon(tree, viewpoint, domain, &mut contour.directions, &mut work.knife.cache)? {
             contour.clip(&tree.skeleton, horizon, &mut work);
         }
         subdivide(&mut contour, &tree.skeleton, depth, &mut work);
@@ -122,6 +122,7 @@ fn horizon(
     viewpoint: &Viewpoint,
     domain: &Domain,
     directions: &mut Directions,
+    cache: &mut ExactCache,
 ) -> Result<Option<HalfSphere>, ViewError> {
     match *domain {
         Domain::Sphere => Ok(None),
@@ -129,12 +130,12 @@ fn horizon(
             if !normal.is_finite() || normal == DVec3::ZERO {
                 return Err(ViewError::BadNormal);
             }
-            Ok(Some(HalfSphere::new(directions.push_given(normal), Sign::Positive)))
+            Ok(Some(HalfSphere::new(directions.push_given(&tree.skeleton, normal, cache), Sign::Positive)))
         }
         Domain::Above => {
             let (piece, side) = viewpoint.surface_piece().ok_or(ViewError::NotOnSurface)?;
             let piece = tree.scene.piece(piece);
-            let circle = directions.push_parallel(&tree.skeleton, piece.plane_id());
+            let circle = directions.push_parallel(&tree.skeleton, piece.plane_id(), cache);
             let up = if piece.facing() == side { Sign::Positive } else { Sign::Negative };
             Ok(Some(HalfSphere::new(circle, up)))
         }
@@ -241,7 +242,7 @@ impl ViewBuilder<'_> {
     fn circle(&mut self, line: LineId) -> CircleId {
         let known = &mut self.line_circles[line.0 as usize];
         if *known == NONE {
-            *known = self.contour.directions.push_line(&self.tree.skeleton, line).0;
+            *known = self.contour.directions.push_line(&self.tree.skeleton, line, &mut self.work.knife.cache).0;
         }
         CircleId(*known)
     }
@@ -249,7 +250,7 @@ impl ViewBuilder<'_> {
     fn direction(&mut self, point: PointId) -> DirectionId {
         let known = &mut self.point_directions[point.0 as usize];
         if *known == NONE {
-            *known = self.contour.directions.push_point(&self.tree.skeleton, point).0;
+            *known = self.contour.directions.push_point(&self.tree.skeleton, point, &mut self.work.knife.cache).0;
         }
         DirectionId(*known)
     }

@@ -82,13 +82,14 @@ impl Approx3 {
         Self::normalised(self.v.cross(other.v), 4.5 * err + 20.0 * U)
     }
 
+    /// True if the bound on the error is so large that it pays to compute the vector from integers.
+    pub(crate) fn is_poor(&self) -> bool {
+        self.error_bound() > 1e-13
+    }
+
     /// The bound on the error of each component, relative to a largest component of 1 to 2.
     pub(crate) fn error_bound(&self) -> f64 {
         self.slack / 8.0
-    }
-
-    pub(crate) fn times_sign(self, sign: Sign) -> Self {
-        if sign.is_negative() { Self { v: -self.v, ..self } } else { self }
     }
 
     /// The sign of the dot product of the two real vectors, if f64 can tell.

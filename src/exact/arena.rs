@@ -5,6 +5,7 @@
 //! width beyond which a result would be wrong: coordinates that span 2,000 bits just take longer.
 
 use super::Sign;
+use glam::DVec3;
 use std::cmp::Ordering;
 
 /// A signed integer in an [`Arena`]: sign and magnitude, least limb first, no leading zero limbs.
@@ -213,32 +214,40 @@ impl Arena {
         kept
     }
 
-    /// The vector scaled by a power of two to a largest component in `[0.5, 1)`, each component
-    /// with a relative error below 2^-52 or an absolute one below 2^-500; zero stays zero.
-    pub(crate) fn direction(&self, v: Num3) -> glam::DVec3 {
-        let bits = |n: Num| match self.limbs[Self::range(n)].last() {
-            None => 0,
-            Some(top) => i64::from(n.len) * 64 - i64::from(top.leading_zeros()),
-        };
-        let most = v.iter().map(|&n| bits(n)).max().unwrap_or(0);
-        let component = |n: Num| -> f64 {
-            if n.len == 0 || most - bits(n) > 500 {
-                return 0.0;
-            }
-            // The two or three top limbs hold at least 64 significant bits.
-            let limbs = &self.limbs[Self::range(n)];
-            let low = limbs.len().saturating_sub(3);
-            let mut value = 0.0;
-            for (k, &limb) in limbs.iter().enumerate().skip(low) {
-                value += limb as f64 * power_of_two(64 * k as i64 - most);
-            }
-            if n.negative { -value } else { value }
-        };
-        glam::DVec3::new(component(v[0]), component(v[1]), component(v[2]))
+    /// The vector scaled by a power of two to a largest component in `[0.5, 1]`, each component
+    /// with a relative error below `2 u` or an absolute one below 2^-500; zero stays zero.
+    pub(crate) fn direction(&self, v: Num3) -> DVec3 {
+        let parts = v.map(|n| self.mantissa_and_exponent(n));
+        let most = parts.iter().filter(|part| part.0 != 0.0).map(|part| part.1).max().unwrap_or(0);
+        DVec3::from(parts.map(|(mantissa, exponent)| mantissa * power_of_two(exponent - most)))
+    }
+
+    /// `numerator / denominator * 2^exponent`, with a relative error below `8 u` where it does not
+    /// under- or overflow.
+    pub(crate) fn quotient(&self, numerator: Num, denominator: Num, exponent: i32) -> f64 {
+        let (n, i) = self.mantissa_and_exponent(numerator);
+        let (d, j) = self.mantissa_and_exponent(denominator);
+        let exponent = i - j + i64::from(exponent);
+        // In two steps: the power alone may be out of range where the result is not.
+        let half = exponent / 2;
+        n / d * power_of_two(half) * power_of_two(exponent - half)
+    }
+
+    /// `(m, e)` with `m 2^e` the number up to a relative error of `2 u` and `|m|` in `[0.5, 1]`; `(0, 0)`
+    /// for zero.
+    fn mantissa_and_exponent(&self, n: Num) -> (f64, i64) {
+        let limbs = &self.limbs[Self::range(n)];
+        let Some(top) = limbs.last() else { return (0.0, 0) };
+        let exponent = i64::from(n.len) * 64 - i64::from(top.leading_zeros());
+        // The two top limbs hold at least 65 significant bits, or all of the number.
+        let low = limbs.len().saturating_sub(2);
+        let pair = limbs[low..].iter().rev().fold(0u128, |sum, &limb| sum << 64 | u128::from(limb));
+        let mantissa = pair as f64 * power_of_two(64 * low as i64 - exponent);
+        (if n.negative { -mantissa } else { mantissa }, exponent)
     }
 }
 
-/// `2^exponent`, 0 where it is too small for an f64.
+/// `2^exponent`, 0 or infinite where f64 cannot hold it.
 fn power_of_two(exponent: i64) -> f64 {
     2f64.powi(exponent.clamp(-1100, 1100) as i32)
 }

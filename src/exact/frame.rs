@@ -1,5 +1,6 @@
 //! The grid: finite f64 coordinates as integers relative to an origin.
 
+use super::approx::U;
 use super::arena::{Arena, Num, Num3};
 use glam::DVec3;
 
@@ -75,10 +76,6 @@ impl Frame {
         frame
     }
 
-    pub(crate) fn origin(&self) -> DVec3 {
-        self.origin
-    }
-
     fn narrow_coordinate(&self, x: f64) -> i128 {
         let (mantissa, exponent, negative) = decompose(x);
         let shift = exponent - self.unit;
@@ -118,6 +115,13 @@ impl Frame {
     /// `point - origin` in grid units.
     pub(crate) fn relative(&self, arena: &mut Arena, point: DVec3) -> Num3 {
         [0, 1, 2].map(|axis| self.relative_coordinate(arena, axis, point[axis]))
+    }
+
+    /// The position `origin + x / w` in scene units with a bound on the error of each coordinate.
+    pub(crate) fn position(&self, arena: &Arena, x: Num3, w: Num) -> (DVec3, DVec3) {
+        let offset = DVec3::from(x.map(|x| arena.quotient(x, w, self.unit)));
+        let position = self.origin + offset;
+        (position, offset.abs() * (10.0 * U) + position.abs() * (2.0 * U) + f64::MIN_POSITIVE)
     }
 }
 

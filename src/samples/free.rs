@@ -107,3 +107,84 @@ impl FreeSpace {
         points
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::{Kind, Mesh, generate};
+
+    /// A block's corners in plan, and its reach in height.
+    fn plan(block: &Block) -> ([[f64; 2]; 4], [f64; 2]) {
+        let Block { frame, low, high } = block;
+        let corners = [[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]];
+        let plan = corners.map(|[x, y]| frame.world([x, y, 0])).map(|[x, y, _]| [x, y]);
+        (plan, [metres(low[2]), metres(high[2])])
+    }
+
+    /// The greatest distance between parallel lines or planes that separate two blocks; not positive
+    /// if they overlap or touch.
+    fn gap(one: &Block, other: &Block) -> f64 {
+        let ((a, a_reach), (b, b_reach)) = (plan(one), plan(other));
+        let mut gap = (a_reach[0] - b_reach[1]).max(b_reach[0] - a_reach[1]);
+        for corners in [a, b] {
+            for k in 0..4 {
+                let ([x0, y0], [x1, y1]) = (corners[k], corners[(k + 1) % 4]);
+                let (nx, ny) = (y1 - y0, x0 - x1);
+                let length = (nx * nx + ny * ny).sqrt();
+                let shadow = |corners: [[f64; 2]; 4]| corners.map(|[x, y]| (x * nx + y * ny) / length);
+                let least = |plan| shadow(plan).into_iter().fold(f64::INFINITY, f64::min);
+                let greatest = |plan| shadow(plan).into_iter().fold(f64::NEG_INFINITY, f64::max);
+                gap = gap.max(least(a) - greatest(b)).max(least(b) - greatest(a));
+            }
+        }
+        gap
+    }
+
+    fn scenes() -> impl Iterator<Item = Mesh> {
+        let sizes = [(100, 0), (1000, 1), (1500, 2), (5000, 3), (20_000, 4)];
+        [Kind::Room, Kind::Office].into_iter().flat_map(move |kind| {
+            sizes.map(|(polygons, seed)| generate(kind, polygons, seed).expect("the count is in range"))
+        })
+    }
+
+    #[test]
+    fn things_touch_exactly_or_keep_apart() {
+        for mesh in scenes() {
+            let solids = &mesh.free_space().solids;
+            for (k, one) in solids.iter().enumerate() {
+                for other in &solids[..k] {
+                    let gap = match (one, other) {
+                        (Solid::Block(one), Solid::Block(other)) => gap(one, other),
+                        (Solid::Ball(ball), other) | (other, Solid::Ball(ball)) => {
+                            other.distance(ball.centre) - ball.radius
+                        }
+                        (Solid::Convex(_), _) | (_, Solid::Convex(_)) => unreachable!("not in generated scenes"),
+                    };
+                    // What touches is laid out in ticks, so there is nothing between 0 and 0.9 mm.
+                    assert!(gap.abs() < 1e-12 || gap > 9e-4, "{gap}: {one:?} {other:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn things_are_inside_the_room() {
+        for mesh in scenes() {
+            let FreeSpace { low, high, solids, .. } = mesh.free_space();
+            let walls = |[x, y]: [f64; 2]| (x - low[0]).min(high[0] - x).min(y - low[1]).min(high[1] - y);
+            for solid in solids {
+                let (sideways, floor, top) = match solid {
+                    Solid::Block(block) => {
+                        let (corners, [floor, top]) = plan(block);
+                        (corners.map(walls).into_iter().fold(f64::INFINITY, f64::min), floor, top)
+                    }
+                    Solid::Ball(Ball { centre: [x, y, z], radius }) => {
+                        (walls([*x, *y]) - radius, z - radius, z + radius)
+                    }
+                    Solid::Convex(_) => unreachable!("not in generated scenes"),
+                };
+                assert!(sideways > 0.01 && floor >= 0.0 && top < high[2] - 0.3, "{solid:?}");
+            }
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! A sample scene as plain data.
 
-use super::free::FreeSpace;
+use super::free::{FreeSpace, Solid};
 use crate::scene::{Axis, FaceSpec, Material, MaterialId, ObjectId, SceneBuilder};
 use glam::DVec3;
 use std::io::{self, Write};
@@ -202,14 +202,14 @@ impl Mesh {
     }
 
     /// Adds something that points have to keep away from.
-    pub(super) fn add_solid(&mut self, solid: super::free::Solid) {
+    pub(super) fn add_solid(&mut self, solid: Solid) {
         self.free.solids.push(solid);
     }
 
-    /// What stands in the scene.
+    /// The air and what stands in it.
     #[cfg(test)]
-    pub(super) fn solids(&self) -> &[super::free::Solid] {
-        &self.free.solids
+    pub(super) fn free_space(&self) -> &FreeSpace {
+        &self.free
     }
 
     /// Cuts `extra` quads, spread evenly, along a diagonal: that many more faces, and no new vertex.

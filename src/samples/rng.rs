@@ -42,6 +42,15 @@ impl Rng {
         low + step * self.below(((high - low) / step + 1) as usize) as i64
     }
 
+    /// The numbers below `count` in random order.
+    pub(super) fn shuffled(&mut self, count: usize) -> Vec<usize> {
+        let mut numbers: Vec<usize> = (0..count).collect();
+        for end in (1..count).rev() {
+            numbers.swap(end, self.below(end + 1));
+        }
+        numbers
+    }
+
     /// True `part` times in `whole`.
     pub(super) fn chance(&mut self, part: usize, whole: usize) -> bool {
         self.below(whole) < part

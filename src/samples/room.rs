@@ -47,13 +47,17 @@ pub(super) fn room(polygons: usize, seed: u64) -> Mesh {
     mesh
 }
 
-/// A piece for every slot, as far as the budget goes.
+/// A piece for every slot, as far as the budget goes: all kinds in turn, each round in another order.
 fn pieces(rng: &mut Rng, columns: usize, rows: usize, mut budget: usize) -> Vec<Piece> {
     let mut numbers = [0; FURNITURE.len()];
     let mut pieces = Vec::new();
+    let mut round = Vec::new();
     for slot in 0..columns * rows {
         let frame = frame(rng, slot % columns, slot / columns);
-        let first = rng.below(FURNITURE.len());
+        if slot % FURNITURE.len() == 0 {
+            round = rng.shuffled(FURNITURE.len());
+        }
+        let first = round[slot % FURNITURE.len()];
         for kind in (0..FURNITURE.len()).map(|k| (first + k) % FURNITURE.len()) {
             let (name, make) = FURNITURE[kind];
             let piece = Piece { name: format!("{name}_{}", numbers[kind] + 1), parts: make(rng, frame) };
