@@ -4,5 +4,6 @@ pub mod bsp;
 pub mod contour;
 pub mod exact;
 pub mod integral;
+pub mod io;
 pub mod scene;
 pub mod verify;

@@ -10,8 +10,8 @@ use glam::{DVec2, DVec3};
 #[derive(Debug)]
 pub(super) struct Facets {
     pub(super) shape: Shape,
-    /// The facets, each counter-clockwise seen from the polygon's front.
-    pub(super) facets: Vec<Vec<VertexId>>,
+    /// The boundaries of the facets, each counter-clockwise seen from the polygon's front.
+    pub(super) outlines: Vec<Vec<VertexId>>,
     /// Three vertices of the plane of all facets, counter-clockwise seen from the front; `None` if
     /// every facet has its own plane.
     pub(super) plane: Option<[VertexId; 3]>,
@@ -19,7 +19,7 @@ pub(super) struct Facets {
 
 impl Facets {
     fn none() -> Self {
-        Self { shape: Shape::Degenerate, facets: Vec::new(), plane: None }
+        Self { shape: Shape::Degenerate, outlines: Vec::new(), plane: None }
     }
 }
 
@@ -47,14 +47,14 @@ pub(super) fn facets(rings: &[Vec<VertexId>], vertices: &[DVec3]) -> Result<Face
     let axes = axes_by_size(triangle_normal(triangle));
     let axis = axes.into_iter().find(|&axis| !orientation(triangle, axis).is_zero()).unwrap_or(axes[0]);
     if solid.len() == 1 && is_convex(&outline, axis) {
-        return Ok(Facets { shape: Shape::Convex, facets: vec![outer.clone()], plane: Some(corners) });
+        return Ok(Facets { shape: Shape::Convex, outlines: vec![outer.clone()], plane: Some(corners) });
     }
     let facets = Local::new(&solid).triangulate(|v| project(vertices[v.index()], axis))?;
     let Some(&[u, v, w]) = facets.first() else { return Ok(Facets::none()) };
     let front = orientation([u, v, w].map(|v| vertices[v.index()]), axis);
     let [a, b, c] = corners;
     let plane = if orientation(triangle, axis) == front { [a, b, c] } else { [a, c, b] };
-    Ok(Facets { shape: Shape::Concave, facets: facets.into_iter().map(Vec::from).collect(), plane: Some(plane) })
+    Ok(Facets { shape: Shape::Concave, outlines: facets.into_iter().map(Vec::from).collect(), plane: Some(plane) })
 }
 
 /// Triangulates a polygon that is not exactly planar.
@@ -79,11 +79,11 @@ fn warped(
             _ => other?,
         },
     };
-    let facets: Vec<_> = triangles.into_iter().filter(|t| !collinear(t.map(position))).map(Vec::from).collect();
-    if facets.is_empty() {
+    let outlines: Vec<_> = triangles.into_iter().filter(|t| !collinear(t.map(position))).map(Vec::from).collect();
+    if outlines.is_empty() {
         return Ok(Facets::none());
     }
-    Ok(Facets { shape: Shape::NonPlanar, facets, plane: None })
+    Ok(Facets { shape: Shape::NonPlanar, outlines, plane: None })
 }
 
 /// The (rounded) projection along a normal, for triangulation.
