@@ -273,11 +273,13 @@ fn warped_quadrangles_become_two_triangles() {
 #[test]
 fn a_face_folded_at_a_right_angle_is_triangulated_all_over() {
     // A floor and a wall in one: seen along z or x it overlaps its own outline.
-    let fold = vec![[0., 0., 0.], [1., 0., 0.], [1., 0., 1.], [1., 1., 1.], [1., 1., 0.], [0., 1., 0.]];
-    let scene = polygon(&[fold]).unwrap();
-    check(&scene);
-    assert_eq!(scene.polygon(PolygonId(0)).shape(), Shape::NonPlanar);
-    assert_eq!(scene.piece_count(), 4);
+    let fold = [[0., 0., 0.], [1., 0., 0.], [1., 0., 1.], [1., 1., 1.], [1., 1., 0.], [0., 1., 0.]];
+    for size in [1e-200, 1.0, 1e200] {
+        let scene = polygon(&[fold.map(|p| p.map(|x: f64| x * size)).to_vec()]).unwrap();
+        check(&scene);
+        assert_eq!(scene.polygon(PolygonId(0)).shape(), Shape::NonPlanar);
+        assert_eq!(scene.piece_count(), 4);
+    }
 }
 
 #[test]

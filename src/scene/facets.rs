@@ -1,6 +1,8 @@
 //! From the rings of a polygon to convex, exactly planar facets.
 
-use super::flat::{axes_by_size, collinear, is_convex, newell_normal, orientation, project, spread, triangle_normal};
+use super::flat::{
+    axes_by_size, collinear, is_convex, newell_normal, orientation, project, spread, triangle_normal, unit_scale,
+};
 use super::triangulate::{Fault, triangulate};
 use super::{Axis, Shape, VertexId};
 use crate::exact::orient3d;
@@ -65,16 +67,15 @@ fn warped(
     vertices: &[DVec3],
 ) -> Result<Facets, Fault> {
     let position = |v: VertexId| vertices[v.index()];
-    let mut normal = newell_normal(outline);
-    if normal.length_squared() < 1e-28 {
-        normal = triangle_normal(triangle);
-    }
+    let (whole, part) = (newell_normal(outline), triangle_normal(triangle));
+    // Of a ring that folds back on itself only rounding errors may be left.
+    let normal = if whole.length_squared() > 1e-20 * part.length_squared() { whole } else { part };
     let [axis, ..] = axes_by_size(normal);
     let local = Local::new(rings);
     let triangles = match local.triangulate(|v| project(position(v), axis)) {
         Ok(triangles) if !triangles.is_empty() => triangles,
         // The facets of a warped polygon are a matter of choice, so here coordinates may be rounded.
-        other => match local.triangulate(oblique(normal, axis, vertices)) {
+        other => match local.triangulate(oblique(normal, axis, unit_scale(outline.iter().copied()), vertices)) {
             Ok(triangles) if !triangles.is_empty() => triangles,
             _ => other?,
         },
@@ -86,15 +87,15 @@ fn warped(
     Ok(Facets { shape: Shape::NonPlanar, outlines, plane: None })
 }
 
-/// The (rounded) projection along a normal, for triangulation.
-fn oblique(normal: DVec3, axis: Axis, vertices: &[DVec3]) -> impl Fn(VertexId) -> DVec2 {
+/// The (rounded) projection along a normal, for triangulation; `scale` brings the coordinates near 1.
+fn oblique(normal: DVec3, axis: Axis, scale: f64, vertices: &[DVec3]) -> impl Fn(VertexId) -> DVec2 {
     let aside = if axis == Axis::X { DVec3::Y } else { DVec3::X };
     let normal = normal.try_normalize().unwrap_or(DVec3::Z);
     let right = normal.cross(aside).try_normalize().unwrap_or(DVec3::X);
     let up = normal.cross(right);
     move |v| {
-        // Halved, so that sums of three cannot overflow; what is next to nothing becomes nothing.
-        let p = vertices[v.index()] * 0.25;
+        let p = vertices[v.index()] * scale;
+        // What is next to nothing becomes nothing.
         let clean = |x: f64| if x.abs() < 1e-30 { 0.0 } else { x };
         DVec2::new(clean(p.dot(right)), clean(p.dot(up)))
     }

@@ -319,18 +319,27 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
     /// Adds the materials that are used; for each the file and line that define it.
     fn add_materials(&mut self) -> Vec<Option<(String, usize)>> {
         let mut origins = Vec::new();
+        let mut undefined = Vec::new();
         for name in &self.used {
             let (material, origin) = match self.definitions.get(name) {
                 Some((file, definition)) => (definition.material.clone(), Some((file.clone(), definition.line))),
                 None => (Material::new(name.clone()), None),
             };
             if origin.is_none() && name != "default" {
-                let name = shown(name);
-                self.warnings
-                    .push(format!("{}: material {name} is not defined anywhere; grey is taken for it", self.name));
+                undefined.push(name.as_str());
             }
             self.builder.add_material(material);
             origins.push(origin);
+        }
+        if !undefined.is_empty() {
+            let names: Vec<_> = undefined.iter().take(8).map(|name| shown(name)).collect();
+            let more = if undefined.len() > names.len() { ", ..." } else { "" };
+            self.warnings.push(format!(
+                "{}: {} materials are defined nowhere, grey is taken for them: {}{more}",
+                self.name,
+                undefined.len(),
+                names.join(", "),
+            ));
         }
         origins
     }
