@@ -89,7 +89,8 @@ impl<'a> ContourSummary<'a> {
         let scene = image.bsp().scene();
         let angles = image.solid_angles();
         let factors = image.form_factors();
-        let share_of = |sum: fn(&Sums) -> f64| Share { solid_angle: sum(&angles), form_factor: factors.as_ref().map(sum) };
+        let share_of =
+            |sum: fn(&Sums) -> f64| Share { solid_angle: sum(&angles), form_factor: factors.as_ref().map(sum) };
         let mut objects = vec![None::<Share>; scene.objects().len()];
         let mut polygons = Vec::with_capacity(angles.polygons.len());
         for (k, angle) in angles.polygons.iter().enumerate() {

@@ -3,10 +3,10 @@
 use crate::args::{Common, Order};
 use crate::failure::Failure;
 use crate::input::{build, load};
-use crate::output::{is_same_file, library_of, print, print_json, write_file};
+use crate::output::{is_same_file, print, print_json, write_obj};
 use crate::summary::{Lines, Timing};
 use nusselt::bsp::SceneBsp;
-use nusselt::io::{write_fragments_obj, write_materials};
+use nusselt::io::fragment_groups;
 use nusselt::scene::{MeshReport, PolygonId, Scene, Shape};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -54,9 +54,7 @@ impl Info {
         let report = scene.report();
         let (bsp, bsp_s) = build(&scene, &self.order)?;
         if let Some(output) = output {
-            let (library, name) = library_of(output);
-            write_file(&library, |out| write_materials(&scene, out))?;
-            write_file(output, |out| write_fragments_obj(&bsp, &name, out))?;
+            write_obj(output, &fragment_groups(&bsp), &scene)?;
         }
         let timing = Timing::new(load_s, bsp_s, &[]);
         if common.json {
@@ -113,7 +111,11 @@ fn as_json(path: &Path, scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timi
 
 fn in_words(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing: Timing) -> String {
     let mut lines = Lines::default();
-    let shapes = [(concave(scene), "concave"), (report.non_planar.len(), "not planar"), (report.degenerate.len(), "without area")];
+    let shapes = [
+        (concave(scene), "concave"),
+        (report.non_planar.len(), "not planar"),
+        (report.degenerate.len(), "without area"),
+    ];
     let shapes: Vec<_> = shapes.iter().filter(|s| s.0 > 0).map(|(n, what)| format!("{n} {what}")).collect();
     let shapes = if shapes.is_empty() { String::new() } else { format!(" ({})", shapes.join(", ")) };
     lines.add("polygons", format!("{}{shapes}, {} vertices", scene.polygon_count(), scene.vertices().len()));
@@ -123,7 +125,11 @@ fn in_words(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing: Timing) 
         let corner = |p: glam::DVec3| format!("{},{},{}", p.x, p.y, p.z);
         lines.add("bounds", format!("{} to {}", corner(low), corner(high)));
     }
-    let edges = [(report.open_edges.len(), "open"), (report.crowded_edges.len(), "of more than two polygons"), (report.turned_edges.len(), "where fronts and backs meet")];
+    let edges = [
+        (report.open_edges.len(), "open"),
+        (report.crowded_edges.len(), "of more than two polygons"),
+        (report.turned_edges.len(), "where fronts and backs meet"),
+    ];
     let edges: Vec<_> = edges.iter().filter(|s| s.0 > 0).map(|(n, what)| format!("{n} {what}")).collect();
     lines.add("edges", if edges.is_empty() { "closed".to_owned() } else { edges.join(", ") });
     lines.add("duplicates", named(&report.duplicates, |[first, later]| format!("{later} of {first}")));

@@ -1,7 +1,8 @@
 //! Files and standard output.
 
 use crate::failure::Failure;
-use nusselt::io::atomic_write;
+use nusselt::io::{atomic_write, mtl, obj};
+use nusselt::scene::Scene;
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -44,6 +45,14 @@ pub(crate) fn library_of(obj: &Path) -> (PathBuf, String) {
     let path = obj.with_extension("mtl");
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     (path, name)
+}
+
+/// Writes an OBJ file with the materials of a scene beside it.
+pub(crate) fn write_obj(path: &Path, groups: &[obj::Group], scene: &Scene) -> Result<(), Failure> {
+    let (library, name) = library_of(path);
+    // First, so that the OBJ file never refers to what is not there.
+    write_file(&library, |out| mtl::write(out, scene.materials()))?;
+    write_file(path, |out| obj::write(out, groups, Some(&name)))
 }
 
 /// True if both names lead to one file, as far as that can be told before it is written.

@@ -121,7 +121,15 @@ impl Projector {
         if self.projection != Projection::Equirectangular {
             return p;
         }
-        let turned = |x: f64| if x < low - 1.0 { x + 2.0 * PI } else if x > high + 1.0 { x - 2.0 * PI } else { x };
+        let turned = |x: f64| {
+            if x < low - 1.0 {
+                x + 2.0 * PI
+            } else if x > high + 1.0 {
+                x - 2.0 * PI
+            } else {
+                x
+            }
+        };
         DVec2::new(turned(p.x).clamp(low, high), p.y)
     }
 

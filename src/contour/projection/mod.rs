@@ -56,7 +56,9 @@ impl Projection {
 #[non_exhaustive]
 pub enum ProjectionError {
     /// Nusselt's projection lays two directions on every point unless one half of the sphere is left out.
-    #[error("the nusselt projection shows a hemisphere; for the whole sphere use equirectangular, stereographic or gnomonic")]
+    #[error(
+        "the nusselt projection shows a hemisphere; for the whole sphere use equirectangular, stereographic or gnomonic"
+    )]
     NotAHemisphere,
 }
 

@@ -54,10 +54,7 @@ fn pictures_of_the_sphere_are_covered_once() {
     let bsp = SceneBsp::build(&mesh.to_builder().build().expect("sound"), &BspOptions::default()).expect("sound");
     for eye in mesh.free_points(4, 2) {
         let image = bsp.view(&Viewpoint::free(DVec3::from(eye)), &Domain::Sphere).expect("a view");
-        assert_eq!(
-            Projector::of_image(&image, Projection::Nusselt).map(|_| ()),
-            Err(ProjectionError::NotAHemisphere)
-        );
+        assert_eq!(Projector::of_image(&image, Projection::Nusselt).map(|_| ()), Err(ProjectionError::NotAHemisphere));
         for projection in [Projection::Gnomonic, Projection::Stereographic, Projection::Equirectangular] {
             let projector = Projector::of_image(&image, projection).expect("any but nusselt");
             let expected = projector.window().size().element_product();
@@ -102,7 +99,8 @@ fn frames_are_orthonormal_whatever_they_are_made_of() {
 
 #[test]
 fn arcs_over_a_pole_of_a_panorama_run_along_its_edge() {
-    let projector = Projector::new(Projection::Equirectangular, ViewFrame::upright(DVec3::Y), None).expect("a panorama");
+    let projector =
+        Projector::new(Projection::Equirectangular, ViewFrame::upright(DVec3::Y), None).expect("a panorama");
     let ends = [DVec3::new(0.3, 0.1, 1.0), DVec3::new(-0.3, -0.1, 1.0)].map(DVec3::normalize);
     let lines = projector.arc(ends, 1e-4);
     assert!(lines.len() >= 2 && lines.iter().flatten().all(|p| p.is_finite()));

@@ -6,13 +6,11 @@ mod report;
 use crate::args::{Common, Order, parse_direction, parse_point, parse_surface};
 use crate::failure::Failure;
 use crate::input::{build, load};
-use crate::output::{is_same_file, library_of, print, print_json, write_file};
+use crate::output::{is_same_file, print, print_json, write_file, write_obj};
 use crate::summary::Timing;
 use glam::DVec3;
 use nusselt::contour::{ContourImage, Projection, Projector, ViewOptions};
-use nusselt::io::{
-    ContourSummary, SvgOptions, write_contour_json, write_materials, write_svg, write_visible_obj,
-};
+use nusselt::io::{ContourSummary, SvgOptions, visible_groups, write_contour_json, write_svg};
 use nusselt::scene::{PolygonId, Side};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -164,11 +162,7 @@ impl Contour {
                 let options = SvgOptions { show_tree: self.show_tree, ..SvgOptions::default() };
                 write_file(path, |out| write_svg(image, &projector, &options, out))
             }
-            Format::Obj => {
-                let (library, name) = library_of(path);
-                write_file(&library, |out| write_materials(image.bsp().scene(), out))?;
-                write_file(path, |out| write_visible_obj(image, &name, out))
-            }
+            Format::Obj => write_obj(path, &visible_groups(image), image.bsp().scene()),
         }
     }
 }
