@@ -214,8 +214,9 @@ impl ViewBuilder<'_> {
                     (sides[k], sides[if k + 1 == sides.len() { 0 } else { k + 1 }].point)
                 }
             };
-            let forward = if side.forward { Sign::Positive } else { Sign::Negative };
-            let inside = match tree.skeleton.line(side.line) {
+            let (line, same_way) = tree.skeleton.representative(side.line);
+            let forward = if side.forward == same_way { Sign::Positive } else { Sign::Negative };
+            let inside = match tree.skeleton.line(line) {
                 // (a - e) x (b - e) points inwards where the boundary runs from a to b.
                 LineDef::Edge(_) => match shown {
                     Side::Back => forward,
@@ -232,7 +233,7 @@ impl ViewBuilder<'_> {
                 }
             };
             let from = self.direction(from);
-            let along = HalfSphere::new(self.circle(side.line), inside);
+            let along = HalfSphere::new(self.circle(line), inside);
             self.polygon.push(PolygonArc { from, along });
         }
         self.stats.inserted += 1;
