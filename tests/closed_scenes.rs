@@ -7,7 +7,7 @@ use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::contour::{ContourImage, Domain, Viewpoint};
 use nusselt::samples::{Kind, generate};
-use nusselt::scene::{PolygonId, Side};
+use nusselt::scene::{PieceRef, PolygonId, PolygonRef, Side};
 use std::f64::consts::PI;
 
 fn check_sums(image: &ContourImage, what: &str) {
@@ -21,23 +21,23 @@ fn check_sums(image: &ContourImage, what: &str) {
 
 /// A hundred views from inside and some from the floor.
 fn closed(kind: Kind, polygons: usize) {
-    let mesh = generate(kind, polygons, 1).unwrap();
-    let scene = mesh.to_builder().build().unwrap();
+    let mesh = generate(kind, polygons, 1).expect("a size the generator takes");
+    let scene = mesh.to_builder().build().expect("a generated scene is valid");
     assert_eq!(scene.polygon_count(), polygons);
-    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).expect("epsilon is 0");
     assert!(bsp.fragment_count() <= 3 * polygons, "{kind} {polygons}: {} fragments", bsp.fragment_count());
     let normals = [DVec3::Z, DVec3::NEG_X, DVec3::new(0.3, -0.5, -0.2), DVec3::new(-1.0, 1.0, 1e-7)];
     for (k, point) in mesh.free_points(100, 3).into_iter().enumerate() {
         let what = format!("{kind} {polygons}, point {k}");
         let domain = if k % 10 == 9 { Domain::Sphere } else { Domain::Hemisphere(normals[k % 4]) };
-        let image = bsp.view(&Viewpoint::free(DVec3::from(point)), &domain).unwrap();
+        let image = bsp.view(&Viewpoint::free(DVec3::from(point)), &domain).expect("a finite eye");
         assert!(image.cells().all(|cell| cell.polygon().is_some()), "{what}: a background cell");
         check_sums(&image, &what);
     }
     let floor: Vec<PolygonId> = scene
         .polygons()
-        .filter(|polygon| polygon.pieces().flat_map(|piece| piece.points()).all(|p| p.z == 0.0))
-        .map(|polygon| polygon.id())
+        .filter(|polygon| polygon.pieces().flat_map(PieceRef::points).all(|p| p.z == 0.0))
+        .map(PolygonRef::id)
         .collect();
     for (k, point) in mesh.floor_points(10, 4).into_iter().enumerate() {
         let what = format!("{kind} {polygons}, floor point {k}");
@@ -45,10 +45,10 @@ fn closed(kind: Kind, polygons: usize) {
         let (polygon, side) = Viewpoint::surface_at(&scene, point, DVec3::Z).expect("a floor point lies on the floor");
         assert_eq!(side, Side::Front, "{what}");
         assert!(floor.contains(&polygon), "{what}");
-        let viewpoint = Viewpoint::on_surface(&scene, polygon, side, point).unwrap();
-        let image = bsp.view(&viewpoint, &Domain::Above).unwrap();
+        let viewpoint = Viewpoint::on_surface(&scene, polygon, side, point).expect("a floor with area");
+        let image = bsp.view(&viewpoint, &Domain::Above).expect("a viewpoint on a surface");
         check_sums(&image, &what);
-        assert!(image.form_factors().unwrap().background < 1e-12, "{what}: background is seen");
+        assert!(image.form_factors().is_some_and(|factors| factors.background < 1e-12), "{what}: background is seen");
     }
 }
 

@@ -11,7 +11,8 @@ const LAYERS: [&str; 9] = ["exact", "geometry", "scene", "bsp", "contour", "inte
 const FORBIDDEN: [(&str, &str); 1] = [("verify", "bsp")];
 
 fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
-    let mut entries: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let entries: std::io::Result<Vec<_>> = fs::read_dir(folder).and_then(Iterator::collect);
+    let mut entries: Vec<PathBuf> = entries.expect("a readable folder").iter().map(fs::DirEntry::path).collect();
     entries.sort();
     for path in entries {
         if path.is_dir() {

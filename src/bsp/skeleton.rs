@@ -468,7 +468,8 @@ fn interpolate(from: ApproxPoint, to: ApproxPoint, at_from: Ball, at_to: Ball) -
     let mut result = from;
     for k in 0..3 {
         let (a, b) = (Ball::new(from.position[k], from.err[k]), Ball::new(to.position[k], to.err[k]));
-        if a.rad == 0.0 && b.rad == 0.0 && from.position[k] == to.position[k] {
+        // Exact where both ends are, and the same.
+        if a.rad == 0.0 && b.rad == 0.0 && compare(a.mid, b.mid).is_zero() {
             continue;
         }
         let x = a + t * (b - a);

@@ -13,17 +13,11 @@ use crate::scene::Side;
 use glam::DVec3;
 
 /// How a view is made. None of it changes what is seen, only the cost and how cells are cut.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewOptions {
     /// Levels of the quadtree at the top of the contour tree: 0 for octants only, 1 for quarter faces
     /// of a cube, each further one quarters those. `None` chooses by the size of the scene. At most 8.
     pub quadtree_depth: Option<u32>,
-}
-
-impl Default for ViewOptions {
-    fn default() -> Self {
-        Self { quadtree_depth: None }
-    }
 }
 
 /// Why there is no view.

@@ -114,6 +114,7 @@ pub enum Side {
 
 impl Side {
     /// The side opposite to this one.
+    #[must_use]
     pub fn opposite(self) -> Self {
         match self {
             Self::Front => Self::Back,
