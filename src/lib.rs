@@ -4,6 +4,7 @@ pub mod bsp;
 pub mod contour;
 pub mod exact;
 pub mod integral;
+pub mod io;
 pub mod samples;
 pub mod scene;
 pub mod verify;

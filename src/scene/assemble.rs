@@ -38,10 +38,10 @@ impl Assembly {
     ) -> Result<(), SceneProblem> {
         let polygon = PolygonId(next_id(self.data.polygons.len(), "polygons")?);
         let shape = facets.shape;
-        debug_assert!(shape == Shape::Degenerate || !facets.facets.is_empty());
+        debug_assert!(shape == Shape::Degenerate || !facets.outlines.is_empty());
         let first = next_id(self.data.pieces.len(), "pieces")?;
         let shared = facets.plane.map(|corners| self.plane(corners)).transpose()?;
-        for ring in facets.facets {
+        for ring in facets.outlines {
             let (plane, facing) = match shared {
                 Some(shared) => shared,
                 None => self.plane([ring[0], ring[1], ring[2]])?,

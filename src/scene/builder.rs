@@ -162,7 +162,7 @@ fn fault_of(polygon: PolygonId, fault: Fault) -> SceneProblem {
     match fault {
         Fault::Crossing => SceneProblem::SelfCrossing { polygon },
         Fault::HoleOutside => SceneProblem::HoleOutside { polygon },
-        Fault::Tangled => SceneProblem::Tangled { polygon },
+        Fault::TooMuchWork => SceneProblem::TooMuchWork { polygon },
         Fault::OutOfRange => SceneProblem::OutOfRange { polygon, limit: RANGE },
     }
 }

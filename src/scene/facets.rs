@@ -1,6 +1,8 @@
 //! From the rings of a polygon to convex, exactly planar facets.
 
-use super::flat::{axes_by_size, collinear, is_convex, newell_normal, orientation, project, spread, triangle_normal};
+use super::flat::{
+    axes_by_size, collinear, is_convex, newell_normal, orientation, project, spread, triangle_normal, unit_scale,
+};
 use super::triangulate::{Fault, triangulate};
 use super::{Axis, Shape, VertexId};
 use crate::exact::orient3d;
@@ -10,8 +12,8 @@ use glam::{DVec2, DVec3};
 #[derive(Debug)]
 pub(super) struct Facets {
     pub(super) shape: Shape,
-    /// The facets, each counter-clockwise seen from the polygon's front.
-    pub(super) facets: Vec<Vec<VertexId>>,
+    /// The boundaries of the facets, each counter-clockwise seen from the polygon's front.
+    pub(super) outlines: Vec<Vec<VertexId>>,
     /// Three vertices of the plane of all facets, counter-clockwise seen from the front; `None` if
     /// every facet has its own plane.
     pub(super) plane: Option<[VertexId; 3]>,
@@ -19,7 +21,7 @@ pub(super) struct Facets {
 
 impl Facets {
     fn none() -> Self {
-        Self { shape: Shape::Degenerate, facets: Vec::new(), plane: None }
+        Self { shape: Shape::Degenerate, outlines: Vec::new(), plane: None }
     }
 }
 
@@ -47,14 +49,14 @@ pub(super) fn facets(rings: &[Vec<VertexId>], vertices: &[DVec3]) -> Result<Face
     let axes = axes_by_size(triangle_normal(triangle));
     let axis = axes.into_iter().find(|&axis| !orientation(triangle, axis).is_zero()).unwrap_or(axes[0]);
     if solid.len() == 1 && is_convex(&outline, axis) {
-        return Ok(Facets { shape: Shape::Convex, facets: vec![outer.clone()], plane: Some(corners) });
+        return Ok(Facets { shape: Shape::Convex, outlines: vec![outer.clone()], plane: Some(corners) });
     }
     let facets = Local::new(&solid).triangulate(|v| project(vertices[v.index()], axis))?;
     let Some(&[u, v, w]) = facets.first() else { return Ok(Facets::none()) };
     let front = orientation([u, v, w].map(|v| vertices[v.index()]), axis);
     let [a, b, c] = corners;
     let plane = if orientation(triangle, axis) == front { [a, b, c] } else { [a, c, b] };
-    Ok(Facets { shape: Shape::Concave, facets: facets.into_iter().map(Vec::from).collect(), plane: Some(plane) })
+    Ok(Facets { shape: Shape::Concave, outlines: facets.into_iter().map(Vec::from).collect(), plane: Some(plane) })
 }
 
 /// Triangulates a polygon that is not exactly planar.
@@ -65,36 +67,35 @@ fn warped(
     vertices: &[DVec3],
 ) -> Result<Facets, Fault> {
     let position = |v: VertexId| vertices[v.index()];
-    let mut normal = newell_normal(outline);
-    if normal.length_squared() < 1e-28 {
-        normal = triangle_normal(triangle);
-    }
+    let (whole, part) = (newell_normal(outline), triangle_normal(triangle));
+    // Of a ring that folds back on itself only rounding errors may be left.
+    let normal = if whole.length_squared() > 1e-20 * part.length_squared() { whole } else { part };
     let [axis, ..] = axes_by_size(normal);
     let local = Local::new(rings);
     let triangles = match local.triangulate(|v| project(position(v), axis)) {
         Ok(triangles) if !triangles.is_empty() => triangles,
         // The facets of a warped polygon are a matter of choice, so here coordinates may be rounded.
-        other => match local.triangulate(oblique(normal, axis, vertices)) {
+        other => match local.triangulate(oblique(normal, axis, unit_scale(outline.iter().copied()), vertices)) {
             Ok(triangles) if !triangles.is_empty() => triangles,
             _ => other?,
         },
     };
-    let facets: Vec<_> = triangles.into_iter().filter(|t| !collinear(t.map(position))).map(Vec::from).collect();
-    if facets.is_empty() {
+    let outlines: Vec<_> = triangles.into_iter().filter(|t| !collinear(t.map(position))).map(Vec::from).collect();
+    if outlines.is_empty() {
         return Ok(Facets::none());
     }
-    Ok(Facets { shape: Shape::NonPlanar, facets, plane: None })
+    Ok(Facets { shape: Shape::NonPlanar, outlines, plane: None })
 }
 
-/// The (rounded) projection along a normal, for triangulation.
-fn oblique(normal: DVec3, axis: Axis, vertices: &[DVec3]) -> impl Fn(VertexId) -> DVec2 {
+/// The (rounded) projection along a normal, for triangulation; `scale` brings the coordinates near 1.
+fn oblique(normal: DVec3, axis: Axis, scale: f64, vertices: &[DVec3]) -> impl Fn(VertexId) -> DVec2 {
     let aside = if axis == Axis::X { DVec3::Y } else { DVec3::X };
     let normal = normal.try_normalize().unwrap_or(DVec3::Z);
     let right = normal.cross(aside).try_normalize().unwrap_or(DVec3::X);
     let up = normal.cross(right);
     move |v| {
-        // Halved, so that sums of three cannot overflow; what is next to nothing becomes nothing.
-        let p = vertices[v.index()] * 0.25;
+        let p = vertices[v.index()] * scale;
+        // What is next to nothing becomes nothing.
         let clean = |x: f64| if x.abs() < 1e-30 { 0.0 } else { x };
         DVec2::new(clean(p.dot(right)), clean(p.dot(up)))
     }

@@ -102,7 +102,7 @@ pub(super) fn newell_normal(ring: &[DVec3]) -> DVec3 {
 pub(super) fn is_convex(ring: &[DVec3], axis: Axis) -> bool {
     let flat = |k: usize| project(ring[k % ring.len()], axis);
     // Going around a convex ring once, one runs to the right once and to the left once.
-    let rightward = |a: DVec2, b: DVec2| a.x < b.x || (!(a.x > b.x) && a.y < b.y);
+    let rightward = |a: DVec2, b: DVec2| a.to_array() < b.to_array();
     let mut side = Sign::Zero;
     let mut reversals = 0;
     for k in 0..ring.len() {

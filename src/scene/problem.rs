@@ -63,9 +63,10 @@ pub enum SceneProblem {
         /// The polygon.
         polygon: PolygonId,
     },
-    /// A boundary that runs over itself very often.
-    #[error("the boundary of polygon {polygon} runs back and forth over itself too often; remove its doubled edges")]
-    Tangled {
+    /// A boundary that runs back and forth over itself, or past itself, so often that triangulating it
+    /// would take time quadratic in its length.
+    #[error("polygon {polygon} takes too much work to triangulate; remove doubled edges or split it")]
+    TooMuchWork {
         /// The polygon.
         polygon: PolygonId,
     },
@@ -105,7 +106,7 @@ impl SceneProblem {
             | Self::UnknownObject { polygon, .. }
             | Self::SelfCrossing { polygon }
             | Self::HoleOutside { polygon }
-            | Self::Tangled { polygon }
+            | Self::TooMuchWork { polygon }
             | Self::OutOfRange { polygon, .. } => Some(polygon),
             _ => None,
         }

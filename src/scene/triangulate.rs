@@ -3,16 +3,17 @@
 //! The vertices go into a Delaunay triangulation first, the boundary becomes constraint edges after
 //! that, and a flood from the outside counts how often the boundary winds around every triangle.
 //! All decisions are exact signs. No vertex is ever made: a boundary that would need one crosses
-//! itself and is refused. Vertices and edges go in in a shuffled order (always the same), which makes
-//! the expected time O(n log^2 n) for any ring: Shewchuk and Brown, "Fast segment insertion and
-//! incremental construction of constrained Delaunay triangulations", 2015.
+//! itself and is refused. Vertices and edges go in in a shuffled order (always the same), so that
+//! the expected number of edges flipped out of the way is O(n log n) (Shewchuk and Brown, "Fast segment insertion and
+//! incremental construction of constrained Delaunay triangulations", 2015). Re-triangulating the room that an edge makes
+//! can be quadratic in it, though; that work is counted, and a boundary that takes too much of it is refused.
 
 use super::flat::spread;
 use glam::DVec2;
 use spade::handles::{FixedUndirectedEdgeHandle, FixedVertexHandle};
 use spade::{
     ConstrainedDelaunayTriangulation, HasPosition, HierarchyHintGenerator, HintGenerator, LastUsedVertexHintGenerator,
-    Point2, Triangulation,
+    LineIntersectionIterator, Point2, Triangulation,
 };
 
 /// Why there is no triangulation.
@@ -24,8 +25,8 @@ pub(super) enum Fault {
     HoleOutside,
     /// The coordinates differ by more than [`RANGE`] powers of two.
     OutOfRange,
-    /// The boundary runs over itself so often that the work would explode.
-    Tangled,
+    /// The boundary lies so that the work would grow with the square of its length.
+    TooMuchWork,
 }
 
 /// The largest ratio of two coordinates (other than 0), as a power of two: exact predicates need
@@ -144,7 +145,7 @@ impl<L: HintGenerator<f64>> Mesh<L> {
             }
         }
         shuffle(&mut edges);
-        let mut trace = Trace { passed: vec![None; handles.len()], budget: 1024 * edges.len() + 65_536 };
+        let mut trace = Trace { passed: vec![None; handles.len()], budget: 1024 * edges.len() + (1 << 24) };
         for (from, to, run) in edges {
             // An edge is searched by turning around its first vertex: take the less busy one.
             let (from, to, outer) = if visits[from as usize] <= visits[to as usize] {
@@ -163,12 +164,14 @@ impl<L: HintGenerator<f64>> Mesh<L> {
         let mut at = from;
         let mut before = None;
         while at != to {
+            let crossed = LineIntersectionIterator::new_from_handles(&self.cdt, at, to).count();
+            trace.spend(crossed.saturating_mul(crossed))?;
             let chain = self.cdt.try_add_constraint(at, to);
             if chain.is_empty() {
                 return Err(Fault::Crossing);
             }
             for edge in chain {
-                trace.budget = trace.budget.checked_sub(1).ok_or(Fault::Tangled)?;
+                trace.spend(1)?;
                 let handle = self.cdt.directed_edge(edge);
                 let next = if handle.from().fix() == at { handle.to().fix() } else { handle.from().fix() };
                 if let Some(before) = before {
@@ -239,7 +242,9 @@ impl<L: HintGenerator<f64>> Mesh<L> {
             }
         }
         if side < 0 {
-            triangles.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+            for triangle in &mut triangles {
+                triangle.swap(1, 2);
+            }
         }
         Ok(triangles)
     }
@@ -249,11 +254,17 @@ impl<L: HintGenerator<f64>> Mesh<L> {
 struct Trace {
     /// For every vertex the neighbours on the straight edges that run through it.
     passed: Vec<Option<[FixedVertexHandle; 2]>>,
-    /// How many more pieces of edges are taken.
+    /// How much more work is taken. Re-triangulating around an edge that crosses k others can take
+    /// k^2 flips.
     budget: usize,
 }
 
 impl Trace {
+    fn spend(&mut self, work: usize) -> Result<(), Fault> {
+        self.budget = self.budget.checked_sub(work).ok_or(Fault::TooMuchWork)?;
+        Ok(())
+    }
+
     /// Notes an edge that runs straight through a vertex. Two that do so in different directions cross.
     fn pass(&mut self, through: FixedVertexHandle, mut neighbours: [FixedVertexHandle; 2]) -> Result<(), Fault> {
         neighbours.sort_unstable();

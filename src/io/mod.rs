@@ -1,0 +1,47 @@
+//! Reading scenes and writing results.
+//!
+//! Readers take any bytes: what they cannot use they refuse with the file, the line and what to do
+//! about it, all faults at once. They keep to memory in proportion to the size of the files.
+
+mod atomic;
+mod error;
+mod lines;
+pub mod mtl;
+mod number;
+pub mod obj;
+
+pub use atomic::atomic_write;
+pub use error::{Fault, Faults, ReadError};
+
+use crate::scene::Scene;
+use std::path::Path;
+
+/// A scene that was read, and what the reader made do with.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The scene; polygon k is the k-th face of the file.
+    pub scene: Scene,
+    /// What a user should know: missing material files, faces without area, lines that were ignored.
+    pub warnings: Vec<String>,
+}
+
+type Reader = fn(&Path) -> Result<Loaded, ReadError>;
+
+/// The formats, by the ending of the file name.
+const READERS: &[(&str, Reader)] = &[("obj", obj::read)];
+
+/// Reads a scene from a file; its ending decides the format, in upper or lower case.
+///
+/// # Errors
+/// If the file cannot be read, its ending is not known, or what it contains cannot be used.
+pub fn read_scene(path: &Path) -> Result<Loaded, ReadError> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let is_reader_of = |ending: &str| name.strip_suffix(ending).is_some_and(|stem| stem.ends_with('.'));
+    match READERS.iter().find(|(ending, _)| is_reader_of(ending)) {
+        Some((_, read)) => read(path),
+        None => Err(ReadError::UnknownFormat {
+            path: path.to_owned(),
+            known: READERS.iter().map(|(ending, _)| format!(".{ending}")).collect::<Vec<_>>().join(", "),
+        }),
+    }
+}

@@ -1,0 +1,73 @@
+//! Materials in MTL files: `newmtl`, `Kd`, `Ks`, `Ns` and `Ke`; everything else is ignored.
+
+use super::error::Faults;
+use super::lines::{is_blank, lines};
+use super::number::{self, Shortest};
+use crate::scene::Material;
+use std::io::{self, Write};
+
+/// A material and the line that defines it.
+#[derive(Clone, Debug)]
+pub(super) struct Definition {
+    pub(super) material: Material,
+    pub(super) line: usize,
+}
+
+/// The materials of a file, in order. Colours that are given by a spectrum or as CIE XYZ keep their
+/// defaults, with a warning.
+pub(super) fn parse(bytes: &[u8], file: &str, faults: &mut Faults, warnings: &mut Vec<String>) -> Vec<Definition> {
+    let mut definitions: Vec<Definition> = Vec::new();
+    let mut spectra = 0_usize;
+    for line in lines(bytes) {
+        let (keyword, rest) = line.split();
+        if keyword == "newmtl" {
+            definitions.push(Definition { material: Material::new(rest), line: line.number });
+            continue;
+        }
+        let Some(Definition { material, .. }) = definitions.last_mut() else { continue };
+        let result = match keyword {
+            "Kd" | "Ks" | "Ke" if rest.starts_with("spectral") || rest.starts_with("xyz") => {
+                spectra += 1;
+                Ok(())
+            }
+            "Kd" => colour(rest).map(|colour| material.diffuse = colour),
+            "Ks" => colour(rest).map(|colour| material.specular = colour),
+            "Ke" => colour(rest).map(|colour| material.emission = colour),
+            "Ns" => number::parse(rest.split(is_blank).next().unwrap_or_default())
+                .map(|exponent| material.exponent = exponent),
+            _ => Ok(()),
+        };
+        if let Err(what) = result {
+            faults.note(file, Some(line.number), format_args!("{keyword}: {what}"));
+        }
+    }
+    if spectra > 0 {
+        warnings
+            .push(format!("{file}: {spectra} colours given as spectrum or XYZ keep their defaults; give them as RGB"));
+    }
+    definitions
+}
+
+/// Three numbers, or one for all three.
+fn colour(text: &str) -> Result<[f64; 3], String> {
+    let mut numbers = text.split(is_blank).filter(|token| !token.is_empty()).map(number::parse);
+    let red = numbers.next().ok_or("a colour takes 3 numbers, red, green and blue")??;
+    let Some(green) = numbers.next() else { return Ok([red; 3]) };
+    let blue = numbers.next().ok_or("a colour takes 3 numbers, red, green and blue, or one for all")??;
+    Ok([red, green?, blue])
+}
+
+/// Writes materials as an MTL file. Numbers are the shortest that read as the same.
+///
+/// # Errors
+/// If writing fails.
+pub fn write(out: &mut impl Write, materials: &[Material]) -> io::Result<()> {
+    for material in materials {
+        writeln!(out, "newmtl {}", super::obj::printable(&material.name))?;
+        for (keyword, [r, g, b]) in [("Kd", material.diffuse), ("Ks", material.specular), ("Ke", material.emission)] {
+            writeln!(out, "{keyword} {} {} {}", Shortest(r), Shortest(g), Shortest(b))?;
+        }
+        writeln!(out, "Ns {}", Shortest(material.exponent))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,377 @@
+//! The OBJ reader.
+
+use super::super::error::Faults;
+use super::super::lines::{Line, is_blank, lines};
+use super::super::mtl::{self, Definition};
+use super::super::number::{self, shown};
+use super::super::{Loaded, ReadError};
+use crate::scene::{FaceSpec, Material, MaterialId, ObjectId, Scene, SceneBuilder, SceneProblem, Shape};
+use glam::DVec3;
+use std::collections::{HashMap, HashSet};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Reads an OBJ file and the material files it names.
+///
+/// # Errors
+/// If the file cannot be read or used. A material file that is missing is a warning.
+pub fn read(path: &Path) -> Result<Loaded, ReadError> {
+    let bytes = fs::read(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let mut known: HashSet<PathBuf> = HashSet::new();
+    parse(&bytes, &path.to_string_lossy(), |name| {
+        let path = folder.join(name);
+        let path = if path.exists() { path } else { folder.join(name.replace('\\', "/")) };
+        // Not from devices, which may never end; and each file once, whatever it is called.
+        if !fs::metadata(&path)?.is_file() {
+            return Err(io::Error::other("it is not a regular file"));
+        }
+        if !known.insert(fs::canonicalize(&path)?) {
+            return Ok(Vec::new());
+        }
+        fs::read(&path)
+    })
+}
+
+/// Reads the bytes of an OBJ file. `name` is what messages call it; `load` gives the bytes of the material
+/// files it names. Takes any bytes.
+///
+/// ```
+/// use nusselt::io::obj;
+/// let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no floor\nf 1 2 3 4\n";
+/// let loaded = obj::parse(text, "floor.obj", |_| Ok(Vec::new()))?;
+/// assert_eq!(loaded.scene.objects(), ["floor"]);
+///
+/// let error = obj::parse(b"v 0 0 1e400\nf 1 2 3", "bad.obj", |_| Ok(Vec::new())).unwrap_err();
+/// assert!(error.to_string().starts_with("bad.obj:1: "));
+/// # Ok::<(), nusselt::io::ReadError>(())
+/// ```
+///
+/// # Errors
+/// [`ReadError::Invalid`] with everything that is wrong.
+pub fn parse(bytes: &[u8], name: &str, load: impl FnMut(&str) -> io::Result<Vec<u8>>) -> Result<Loaded, ReadError> {
+    let mut reader = Reader::new(name, load);
+    for line in lines(bytes) {
+        reader.read_line(&line);
+    }
+    reader.finish()
+}
+
+/// A face with the vertices as the file numbers them, from 0.
+struct Face {
+    line: usize,
+    ring: Vec<usize>,
+    object: ObjectId,
+    material: usize,
+}
+
+struct Reader<'a, L> {
+    name: &'a str,
+    load: L,
+    builder: SceneBuilder,
+    vertex_count: usize,
+    has_bad_vertices: bool,
+    faces: Vec<Face>,
+    object: Option<String>,
+    group: Option<String>,
+    /// The object of the next face, once it is known.
+    current: Option<ObjectId>,
+    /// The names of the materials that are used, and where they are in the list.
+    used: Vec<String>,
+    used_places: HashMap<String, usize>,
+    material: Option<usize>,
+    libraries: HashSet<String>,
+    definitions: HashMap<String, (String, Definition)>,
+    ignored: Option<(usize, String)>,
+    ignored_count: usize,
+    faults: Faults,
+    warnings: Vec<String>,
+}
+
+/// Keywords that say nothing about the shape of a face.
+const WITHOUT_EFFECT: &[&str] = &[
+    "vt",
+    "vn",
+    "p",
+    "l",
+    "s",
+    "mg",
+    "bevel",
+    "c_interp",
+    "d_interp",
+    "lod",
+    "shadow_obj",
+    "trace_obj",
+    "maplib",
+    "usemap",
+];
+
+impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
+    fn new(name: &'a str, load: L) -> Self {
+        Self {
+            name,
+            load,
+            builder: Scene::builder(),
+            vertex_count: 0,
+            has_bad_vertices: false,
+            faces: Vec::new(),
+            object: None,
+            group: None,
+            current: None,
+            used: Vec::new(),
+            used_places: HashMap::new(),
+            material: None,
+            libraries: HashSet::new(),
+            definitions: HashMap::new(),
+            ignored: None,
+            ignored_count: 0,
+            faults: Faults::default(),
+            warnings: Vec::new(),
+        }
+    }
+
+    fn read_line(&mut self, line: &Line<'_>) {
+        let (keyword, rest) = line.split();
+        match keyword {
+            "v" => self.read_vertex(line.number, rest),
+            "f" => self.read_face(line.number, rest),
+            "o" => self.name_object(rest, true),
+            "g" => self.name_object(rest, false),
+            "usemtl" => self.material = Some(self.use_material(rest)),
+            "mtllib" => self.read_libraries(line.number, rest),
+            _ if WITHOUT_EFFECT.contains(&keyword) => {}
+            _ => {
+                self.ignored_count += 1;
+                self.ignored.get_or_insert_with(|| (line.number, shown(keyword)));
+            }
+        }
+    }
+
+    fn read_vertex(&mut self, line: usize, rest: &str) {
+        let mut tokens = rest.split(is_blank).filter(|token| !token.is_empty());
+        let mut position = [0.0; 3];
+        for (k, coordinate) in position.iter_mut().enumerate() {
+            let result = match tokens.next() {
+                Some(token) => number::parse(token),
+                None => Err(format!("a vertex takes 3 coordinates, but here are {k}")),
+            };
+            match result {
+                Ok(number) => *coordinate = number,
+                Err(what) => {
+                    self.faults.note(self.name, Some(line), what);
+                    self.has_bad_vertices = true;
+                    break;
+                }
+            }
+        }
+        self.builder.add_vertex(DVec3::from(position));
+        self.vertex_count += 1;
+    }
+
+    fn read_face(&mut self, line: usize, rest: &str) {
+        let ring = self.ring(rest).unwrap_or_else(|what| {
+            self.faults.note(self.name, Some(line), what);
+            Vec::new()
+        });
+        let object = self.current_object();
+        let material = self.material.unwrap_or_else(|| self.use_material("default"));
+        self.material = Some(material);
+        self.faces.push(Face { line, ring, object, material });
+    }
+
+    fn ring(&self, corners: &str) -> Result<Vec<usize>, String> {
+        let mut ring = Vec::new();
+        for token in corners.split(is_blank).filter(|token| !token.is_empty()) {
+            ring.push(self.index(token)?);
+        }
+        if ring.len() < 3 {
+            return Err(format!("a face takes at least 3 vertices, but here are {}", ring.len()));
+        }
+        ring.shrink_to_fit();
+        Ok(ring)
+    }
+
+    /// The vertex that a corner of a face names, from 0. It may come later in the file.
+    fn index(&self, token: &str) -> Result<usize, String> {
+        let number = token.split('/').next().unwrap_or_default();
+        let Ok(index) = number.parse::<i64>() else {
+            return Err(format!("{} is not the index of a vertex; it takes a whole number", shown(token)));
+        };
+        let count = self.vertex_count;
+        let back = usize::try_from(index.unsigned_abs()).unwrap_or(usize::MAX);
+        match index {
+            0 => Err("there is no vertex 0; vertices are counted from 1".to_owned()),
+            1.. => Ok(back - 1),
+            _ => count
+                .checked_sub(back)
+                .ok_or_else(|| format!("vertex {index} from here on back: there are only {count} so far")),
+        }
+    }
+
+    fn name_object(&mut self, name: &str, is_object: bool) {
+        let name = Some(name.to_owned()).filter(|name| !name.is_empty());
+        if is_object {
+            self.object = name;
+        } else {
+            self.group = name;
+        }
+        self.current = None;
+    }
+
+    fn current_object(&mut self) -> ObjectId {
+        let name = self.object.as_deref().or(self.group.as_deref()).unwrap_or("default");
+        let builder = &mut self.builder;
+        *self.current.get_or_insert_with(|| builder.add_object(name))
+    }
+
+    fn use_material(&mut self, name: &str) -> usize {
+        if let Some(&place) = self.used_places.get(name) {
+            return place;
+        }
+        self.used.push(name.to_owned());
+        self.used_places.insert(name.to_owned(), self.used.len() - 1);
+        self.used.len() - 1
+    }
+
+    /// The rest of the line is one name with blanks in it, or several names.
+    fn read_libraries(&mut self, line: usize, rest: &str) {
+        if self.libraries.contains(rest) || self.read_library(rest).is_ok() {
+            return;
+        }
+        for name in rest.split(is_blank).filter(|name| !name.is_empty()) {
+            if self.libraries.contains(name) {
+                continue;
+            }
+            if let Err(error) = self.read_library(name) {
+                let name_shown = shown(name);
+                self.warnings.push(format!("{}:{line}: no materials from {name_shown}: {error}", self.name));
+                self.libraries.insert(name.to_owned());
+            }
+        }
+    }
+
+    fn read_library(&mut self, name: &str) -> io::Result<()> {
+        let bytes = (self.load)(name)?;
+        self.libraries.insert(name.to_owned());
+        for definition in mtl::parse(&bytes, name, &mut self.faults, &mut self.warnings) {
+            let key = definition.material.name.clone();
+            // The first definition counts, as it does for readers that stop at it.
+            self.definitions.entry(key).or_insert_with(|| (name.to_owned(), definition));
+        }
+        Ok(())
+    }
+
+    /// Ends with what is wrong.
+    fn refuse(mut self) -> Result<Loaded, ReadError> {
+        self.faults.sort();
+        Err(ReadError::Invalid(self.faults))
+    }
+
+    fn finish(mut self) -> Result<Loaded, ReadError> {
+        let origins = self.add_materials();
+        let lines = self.add_faces();
+        if self.has_bad_vertices || (self.vertex_count == 0 && !self.faults.is_empty()) {
+            return self.refuse();
+        }
+        let scene = match std::mem::take(&mut self.builder).build() {
+            Ok(scene) if self.faults.is_empty() => scene,
+            Ok(_) => return self.refuse(),
+            Err(error) => {
+                for problem in &error.problems {
+                    let (file, line) = self.place(problem, &origins, &lines);
+                    self.faults.note(&file, line, problem);
+                }
+                return self.refuse();
+            }
+        };
+        self.warnings.extend(empty_faces(&scene, self.name, &lines));
+        if scene.polygon_count() == 0 {
+            self.warnings.push(format!("{}: there are no faces", self.name));
+        }
+        if let Some((line, keyword)) = self.ignored {
+            let count = self.ignored_count;
+            self.warnings.push(format!(
+                "{}:{line}: {keyword} and what else is not known was ignored, {count} lines in all",
+                self.name
+            ));
+        }
+        Ok(Loaded { scene, warnings: self.warnings })
+    }
+
+    /// The file and line of a problem.
+    fn place(
+        &self,
+        problem: &SceneProblem,
+        origins: &[Option<(String, usize)>],
+        lines: &[usize],
+    ) -> (String, Option<usize>) {
+        let mut line = problem.polygon().and_then(|polygon| lines.get(polygon.index()).copied());
+        if let SceneProblem::BadMaterial { material, .. } = problem {
+            if let Some(Some((file, origin))) = origins.get(*material as usize) {
+                return (file.clone(), Some(*origin));
+            }
+            line = None;
+        }
+        (self.name.to_owned(), line)
+    }
+
+    /// Adds the materials that are used; for each the file and line that define it.
+    fn add_materials(&mut self) -> Vec<Option<(String, usize)>> {
+        let mut origins = Vec::new();
+        let mut undefined = Vec::new();
+        for name in &self.used {
+            let (material, origin) = match self.definitions.get(name) {
+                Some((file, definition)) => (definition.material.clone(), Some((file.clone(), definition.line))),
+                None => (Material::new(name.clone()), None),
+            };
+            if origin.is_none() && name != "default" {
+                undefined.push(name.as_str());
+            }
+            self.builder.add_material(material);
+            origins.push(origin);
+        }
+        if !undefined.is_empty() {
+            let names: Vec<_> = undefined.iter().take(8).map(|name| shown(name)).collect();
+            let more = if undefined.len() > names.len() { ", ..." } else { "" };
+            self.warnings.push(format!(
+                "{}: {} materials are defined nowhere, grey is taken for them: {}{more}",
+                self.name,
+                undefined.len(),
+                names.join(", "),
+            ));
+        }
+        origins
+    }
+
+    /// Adds the faces; for each its line. One that cannot be used keeps its number, for the messages about
+    /// the others, though there will be no scene.
+    fn add_faces(&mut self) -> Vec<usize> {
+        let count = self.vertex_count;
+        let mut lines = Vec::with_capacity(self.faces.len());
+        for Face { line, mut ring, object, material } in self.faces.drain(..) {
+            if let Some(unknown) = ring.iter().find(|&&index| index >= count) {
+                let what = format_args!("there is no vertex {}; the file has {count}", unknown + 1);
+                self.faults.note(self.name, Some(line), what);
+                ring.clear();
+            }
+            if ring.is_empty() {
+                if count == 0 {
+                    break;
+                }
+                ring = vec![0; 3];
+            }
+            lines.push(line);
+            self.builder.add_face(FaceSpec { rings: vec![ring], object, material: MaterialId(material as u32) });
+        }
+        lines
+    }
+}
+
+/// A warning that counts the faces without area.
+fn empty_faces(scene: &Scene, name: &str, lines: &[usize]) -> Option<String> {
+    let mut empty = scene.polygons().filter(|polygon| polygon.shape() == Shape::Degenerate);
+    let first = lines.get(empty.next()?.id().index())?;
+    let count = 1 + empty.count();
+    Some(format!("{name}:{first}: this face has no area, {count} in all; they keep their numbers and hide nothing"))
+}
