@@ -4,14 +4,14 @@ mod common;
 
 use common::{Faces, Random, cluttered_room};
 use glam::{DQuat, DVec3};
-use nusselt::bsp::{BspOptions, SceneBsp};
+use nusselt::bsp::{BspOptions, FragmentRef, SceneBsp};
 use nusselt::contour::{ContourImage, Domain, Location, Viewpoint};
 use nusselt::scene::{PolygonId, Scene, Side};
 use nusselt::verify::{RayAnswer, RayOracle};
 
 fn view(scene: &Scene, eye: DVec3) -> ContourImage {
-    let bsp = SceneBsp::build(scene, &BspOptions::default()).unwrap();
-    bsp.view(&Viewpoint::free(eye), &Domain::Sphere).unwrap()
+    let bsp = SceneBsp::build(scene, &BspOptions::default()).expect("epsilon is 0");
+    bsp.view(&Viewpoint::free(eye), &Domain::Sphere).expect("the eye is finite")
 }
 
 fn seen(image: &ContourImage, direction: DVec3) -> Option<(PolygonId, Side)> {
@@ -168,8 +168,8 @@ fn the_two_traversals_mirror_each_other() {
     let mut random = Random(2);
     for _ in 0..20 {
         let eye = random.in_cube(12.0);
-        let front: Vec<_> = bsp.front_to_back(eye).map(|f| f.id()).collect();
-        let mut back: Vec<_> = bsp.back_to_front(eye).map(|f| f.id()).collect();
+        let front: Vec<_> = bsp.front_to_back(eye).map(FragmentRef::id).collect();
+        let mut back: Vec<_> = bsp.back_to_front(eye).map(FragmentRef::id).collect();
         back.reverse();
         assert_eq!(front, back);
         assert!(front.len() <= bsp.fragment_count());

@@ -41,7 +41,7 @@ pub(super) fn choose(skeleton: &Skeleton, items: &[Candidate<'_>], grid: &dyn Fn
     Choice::Polygon(best_polygon_plane(skeleton, items))
 }
 
-/// The surface-area cost (MacDonald and Booth 1990) of the best axis-aligned plane through a bound of
+/// The surface-area cost (`MacDonald` and Booth 1990) of the best axis-aligned plane through a bound of
 /// some fragment's box, if it separates anything.
 fn best_axis_plane(items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Option<(Axis, f64)> {
     let whole = items.iter().fold(Bounds::EMPTY, |b, item| b.union(item.bounds));
@@ -50,10 +50,6 @@ fn best_axis_plane(items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Optio
     let mut counts = Vec::new();
     for axis in Axis::ALL {
         let k = axis as usize;
-        let extent = whole.high[k] - whole.low[k];
-        if extent.partial_cmp(&0.0) != Some(std::cmp::Ordering::Greater) && whole.high[k] != whole.low[k] {
-            continue;
-        }
         let stride = total.div_ceil(AXIS_CANDIDATES / 2);
         let mut values: Vec<f64> = items
             .iter()
@@ -73,7 +69,7 @@ fn best_axis_plane(items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Optio
             let past_last_at_or_below = values.partition_point(|&c| c <= low);
             counts[first_at_or_above][0] += 1;
             counts[past_last_at_or_below][1] += 1;
-            if low == high && values.get(first_at_or_above) == Some(&low) {
+            if low >= high && values.get(first_at_or_above).is_some_and(|&c| c <= low) {
                 counts[first_at_or_above][2] += 1;
             }
         }

@@ -7,6 +7,7 @@
 
 mod build;
 mod choose;
+mod collinear;
 mod fragment;
 mod skeleton;
 mod split;

@@ -4,6 +4,7 @@
 //! planes. Fragments that share a line or a point share its id, so that the most frequent zeros
 //! are known by identity.
 
+use super::collinear::Collinear;
 use crate::exact::{Approx3, Arena, Ball, BitRange, Frame, Num, Num3, Sign, U, orient3d};
 use crate::scene::{Axis, PlaneId, Scene, SupportingPlane, VertexId};
 use glam::DVec3;
@@ -14,7 +15,7 @@ use rustc_hash::FxHashMap;
 pub(crate) struct PointId(pub(crate) u32);
 
 /// A line: scene edges first, under their own numbers, then creases.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct LineId(pub(crate) u32);
 
 /// What a point is.
@@ -61,6 +62,10 @@ pub(crate) struct Skeleton {
     approx_planes: Vec<ApproxPlane>,
     axis_planes: FxHashMap<(Axis, u64), PlaneId>,
     edges: Vec<[VertexId; 2]>,
+    collinear: Collinear,
+    /// The lines through each vertex, one vertex after the other, and where each begins.
+    vertex_lines: Vec<LineId>,
+    vertex_lines_start: Vec<u32>,
     creases: Vec<[PlaneId; 2]>,
     crease_ids: FxHashMap<[PlaneId; 2], LineId>,
     constructed: Vec<PointDef>,
@@ -76,8 +81,14 @@ impl Skeleton {
     pub(crate) fn new(scene: &Scene) -> Self {
         let bits = BitRange::of(scene.vertices().iter().copied());
         let origin = scene.vertices().first().copied().unwrap_or_default();
+        let frame = Frame::new(bits, origin);
+        let collinear = Collinear::new(scene.vertices(), scene.edges(), &frame);
+        let (vertex_lines, vertex_lines_start) = lines_through_vertices(scene, &collinear);
         let mut skeleton = Self {
             bits,
+            collinear,
+            vertex_lines,
+            vertex_lines_start,
             vertices: scene.vertices().to_vec(),
             planes: Vec::new(),
             approx_planes: Vec::new(),
@@ -93,7 +104,7 @@ impl Skeleton {
                 .map(|&position| ApproxPoint { position, err: DVec3::ZERO })
                 .collect(),
             incident: Vec::new(),
-            frame: Frame::new(bits, origin),
+            frame,
         };
         for &plane in scene.planes() {
             skeleton.push_plane(plane);
@@ -145,6 +156,17 @@ impl Skeleton {
         }
     }
 
+    /// The line that stands for all that are known to be the same as this one, and whether it runs
+    /// the same way.
+    pub(crate) fn representative(&self, line: LineId) -> (LineId, bool) {
+        if (line.0 as usize) < self.edges.len() {
+            let (edge, same_way) = self.collinear.representative(line.0);
+            (LineId(edge), same_way)
+        } else {
+            (line, true)
+        }
+    }
+
     pub(crate) fn crease(&mut self, a: PlaneId, b: PlaneId) -> LineId {
         let key = [a.min(b), a.max(b)];
         let next = LineId(self.line_count() as u32);
@@ -169,10 +191,14 @@ impl Skeleton {
         self.approx_points[id.0 as usize]
     }
 
-    /// True if the point is known by identity to lie on the line; false says nothing.
+    /// True if the point is known by identity to lie on the line, which stands for itself; false says
+    /// nothing.
     pub(crate) fn known_on_line(&self, point: PointId, line: LineId) -> bool {
         match (point.0 as usize).checked_sub(self.vertices.len()) {
-            None => self.edges.get(line.0 as usize).is_some_and(|edge| edge.contains(&VertexId(point.0))),
+            None => {
+                let [start, end] = [point.0, point.0 + 1].map(|k| self.vertex_lines_start[k as usize] as usize);
+                self.vertex_lines[start..end].contains(&line)
+            }
             Some(k) => self.incident[k].contains(&line.0),
         }
     }
@@ -206,7 +232,7 @@ impl Skeleton {
             Some(&id) => id,
             None => self.push_constructed(def, plane, ends, arena),
         };
-        self.note_incidence(id, line);
+        self.note_incidence(id, self.representative(line).0);
         self.note_incidence(id, crease);
         id
     }
@@ -442,7 +468,8 @@ fn interpolate(from: ApproxPoint, to: ApproxPoint, at_from: Ball, at_to: Ball) -
     let mut result = from;
     for k in 0..3 {
         let (a, b) = (Ball::new(from.position[k], from.err[k]), Ball::new(to.position[k], to.err[k]));
-        if a.rad == 0.0 && b.rad == 0.0 && from.position[k] == to.position[k] {
+        // Exact where both ends are, and the same.
+        if a.rad == 0.0 && b.rad == 0.0 && compare(a.mid, b.mid).is_zero() {
             continue;
         }
         let x = a + t * (b - a);
@@ -460,4 +487,23 @@ fn compare(x: f64, y: f64) -> Sign {
     } else {
         Sign::Zero
     }
+}
+
+/// For every vertex the lines of its edges, each once; with the place where each vertex's lines begin.
+fn lines_through_vertices(scene: &Scene, collinear: &Collinear) -> (Vec<LineId>, Vec<u32>) {
+    let mut pairs: Vec<(VertexId, LineId)> = Vec::with_capacity(2 * scene.edges().len());
+    for (k, edge) in scene.edges().iter().enumerate() {
+        let line = LineId(collinear.representative(k as u32).0);
+        pairs.extend(edge.map(|vertex| (vertex, line)));
+    }
+    pairs.sort_unstable();
+    pairs.dedup();
+    let mut starts = vec![0; scene.vertices().len() + 1];
+    for (vertex, _) in &pairs {
+        starts[vertex.index() + 1] += 1;
+    }
+    for k in 1..starts.len() {
+        starts[k] += starts[k - 1];
+    }
+    (pairs.into_iter().map(|(_, line)| line).collect(), starts)
 }

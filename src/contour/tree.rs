@@ -248,6 +248,11 @@ impl ContourTree {
             work.visited += 1;
             let (circle, negative, positive) = (node.circle, node.negative, node.positive);
             let part = &work.arcs[start..start + len];
+            if let Some(side) = part.iter().find(|arc| arc.along.circle() == circle) {
+                let child = if side.along.inside().is_positive() { positive } else { negative };
+                work.stack.push((child, start, len));
+                continue;
+            }
             let sides = work.knife.classify(skeleton, &self.directions, part, circle);
             match sides {
                 Sides { negative: false, .. } => work.stack.push((positive, start, len)),

@@ -13,17 +13,11 @@ use crate::scene::Side;
 use glam::DVec3;
 
 /// How a view is made. None of it changes what is seen, only the cost and how cells are cut.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewOptions {
     /// Levels of the quadtree at the top of the contour tree: 0 for octants only, 1 for quarter faces
     /// of a cube, each further one quarters those. `None` chooses by the size of the scene. At most 8.
     pub quadtree_depth: Option<u32>,
-}
-
-impl Default for ViewOptions {
-    fn default() -> Self {
-        Self { quadtree_depth: None }
-    }
 }
 
 /// Why there is no view.
@@ -214,8 +208,9 @@ impl ViewBuilder<'_> {
                     (sides[k], sides[if k + 1 == sides.len() { 0 } else { k + 1 }].point)
                 }
             };
-            let forward = if side.forward { Sign::Positive } else { Sign::Negative };
-            let inside = match tree.skeleton.line(side.line) {
+            let (line, same_way) = tree.skeleton.representative(side.line);
+            let forward = if side.forward == same_way { Sign::Positive } else { Sign::Negative };
+            let inside = match tree.skeleton.line(line) {
                 // (a - e) x (b - e) points inwards where the boundary runs from a to b.
                 LineDef::Edge(_) => match shown {
                     Side::Back => forward,
@@ -232,7 +227,7 @@ impl ViewBuilder<'_> {
                 }
             };
             let from = self.direction(from);
-            let along = HalfSphere::new(self.circle(side.line), inside);
+            let along = HalfSphere::new(self.circle(line), inside);
             self.polygon.push(PolygonArc { from, along });
         }
         self.stats.inserted += 1;

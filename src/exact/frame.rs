@@ -18,7 +18,7 @@ impl BitRange {
     pub(crate) const EMPTY: Self = Self { low: i32::MAX, high: i32::MIN };
 
     pub(crate) fn of(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |range, p| p.to_array().into_iter().fold(range, |range, x| range.with(x)))
+        points.into_iter().fold(Self::EMPTY, |range, p| p.to_array().into_iter().fold(range, Self::with))
     }
 
     /// The range widened to hold `x` too.

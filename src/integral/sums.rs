@@ -48,7 +48,7 @@ impl Sums {
 impl ContourImage {
     /// The solid angle in which each polygon is seen, in steradians; they sum to that of the domain.
     pub fn solid_angles(&self) -> Sums {
-        self.sums(|corners| solid_angle(corners))
+        self.sums(solid_angle)
     }
 
     /// The form factor from the viewpoint (a differential element with the domain's normal) to each

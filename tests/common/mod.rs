@@ -5,27 +5,27 @@ use glam::{DMat3, DQuat, DVec3};
 use nusselt::scene::{Material, Scene};
 
 /// A small deterministic generator (Knuth's MMIX constants).
-pub struct Random(pub u64);
+pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
     /// Uniform in [0, 1).
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 53) as f64
     }
 
     /// Uniform in [low, high).
-    pub fn within(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn within(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
     /// Uniform in a cube around the origin.
-    pub fn in_cube(&mut self, half: f64) -> DVec3 {
+    pub(crate) fn in_cube(&mut self, half: f64) -> DVec3 {
         DVec3::new(self.within(-half, half), self.within(-half, half), self.within(-half, half))
     }
 
     /// Uniform on the sphere.
-    pub fn direction(&mut self) -> DVec3 {
+    pub(crate) fn direction(&mut self) -> DVec3 {
         loop {
             let d = self.in_cube(1.0);
             if (1e-3..1.0).contains(&d.length_squared()) {
@@ -35,29 +35,29 @@ impl Random {
     }
 
     /// A whole number in 0..n.
-    pub fn below(&mut self, n: usize) -> usize {
+    pub(crate) fn below(&mut self, n: usize) -> usize {
         (self.unit() * n as f64) as usize
     }
 }
 
 /// Faces under construction.
 #[derive(Clone, Default)]
-pub struct Faces {
-    pub vertices: Vec<[f64; 3]>,
-    pub faces: Vec<Vec<usize>>,
+pub(crate) struct Faces {
+    pub(crate) vertices: Vec<[f64; 3]>,
+    pub(crate) faces: Vec<Vec<usize>>,
 }
 
 impl Faces {
     /// One face; gives its number.
-    pub fn face(&mut self, corners: &[DVec3]) -> usize {
+    pub(crate) fn face(&mut self, corners: &[DVec3]) -> usize {
         let first = self.vertices.len();
-        self.vertices.extend(corners.iter().map(|p| p.to_array()));
+        self.vertices.extend(corners.iter().map(DVec3::to_array));
         self.faces.push((first..first + corners.len()).collect());
         self.faces.len() - 1
     }
 
     /// The six faces of a box, turned by `turn`; fronts inwards for a room.
-    pub fn cuboid(&mut self, center: DVec3, half: DVec3, turn: DQuat, inwards: bool) {
+    pub(crate) fn cuboid(&mut self, center: DVec3, half: DVec3, turn: DQuat, inwards: bool) {
         let turn = DMat3::from_quat(turn);
         let corner = |k: usize| {
             let sign = |bit: usize| if k & bit == 0 { -1.0 } else { 1.0 };
@@ -73,13 +73,13 @@ impl Faces {
         }
     }
 
-    pub fn build(&self) -> Scene {
-        Scene::builder().mesh(&self.vertices, &self.faces, Material::new("grey")).build().unwrap()
+    pub(crate) fn build(&self) -> Scene {
+        Scene::builder().mesh(&self.vertices, &self.faces, Material::new("grey")).build().expect("a valid scene")
     }
 }
 
 /// A closed room of half size 10 with `n` boxes, which may overlap; half of them are turned.
-pub fn cluttered_room(n: usize, seed: u64) -> Faces {
+pub(crate) fn cluttered_room(n: usize, seed: u64) -> Faces {
     let mut random = Random(seed);
     let mut faces = Faces::default();
     faces.cuboid(DVec3::ZERO, DVec3::splat(10.0), DQuat::IDENTITY, true);
