@@ -2,8 +2,9 @@
 
 use super::{form_factor, solid_angle};
 use crate::contour::{Cell, ContourImage};
-use crate::scene::{PolygonId, Side};
+use crate::scene::{ObjectId, PolygonId, Scene, Side};
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// A quantity of a [`ContourImage`] summed over the cells of each polygon.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +38,15 @@ impl Sums {
     pub fn of(&self, polygon: PolygonId) -> f64 {
         let found = self.polygons.binary_search_by_key(&polygon, |sum| sum.polygon);
         found.map_or(0.0, |k| self.polygons[k].both())
+    }
+
+    /// The quantity of every visible object, in the order of the scene's objects.
+    pub fn by_object(&self, scene: &Scene) -> Vec<(ObjectId, f64)> {
+        let mut sums = BTreeMap::new();
+        for sum in &self.polygons {
+            *sums.entry(scene.polygon(sum.polygon).object()).or_insert(0.0) += sum.both();
+        }
+        sums.into_iter().collect()
     }
 
     /// Over all polygons and the background.

@@ -1,0 +1,75 @@
+//! The tables of docs/performance.md: `cargo bench --bench measure`, or for one scene
+//! `cargo bench --bench measure -- room 50000 [quadtree depth]`.
+
+use glam::DVec3;
+use nusselt::bsp::{BspOptions, SceneBsp};
+use nusselt::contour::{Domain, ViewOptions, Viewpoint};
+use nusselt::samples::{Kind, generate};
+use std::error::Error;
+use std::time::Instant;
+
+/// Views a row; the same points for every machine.
+const VIEWS: usize = 100;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    println!(
+        "| scene | polygons | BSP s | fragments | depth | view ms | worst | factors ms | cells | visible | inserted | skipped | nodes | filter undecided | integers | worst sum |"
+    );
+    println!(
+        "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
+    );
+    if let [kind, polygons, rest @ ..] = words.as_slice() {
+        let depth = rest.first().map(|depth| depth.parse()).transpose()?;
+        return row(kind.parse()?, polygons.parse()?, depth);
+    }
+    for kind in Kind::ALL {
+        for polygons in [1_000, 10_000, 50_000] {
+            row(kind, polygons, None)?;
+        }
+    }
+    Ok(())
+}
+
+fn row(kind: Kind, polygons: usize, depth: Option<u32>) -> Result<(), Box<dyn Error>> {
+    let mesh = generate(kind, polygons, 1)?;
+    let scene = mesh.to_builder().build()?;
+    let start = Instant::now();
+    let bsp = SceneBsp::build(&scene, &BspOptions::default())?;
+    let built = start.elapsed().as_secs_f64();
+    let options = ViewOptions { quadtree_depth: depth };
+    let (mut view, mut longest, mut factors, mut worst) = (0.0, 0.0f64, 0.0, 0.0f64);
+    let mut counts = [0; 7];
+    for point in mesh.free_points(VIEWS, 3) {
+        let start = Instant::now();
+        let image = bsp.view_with(&Viewpoint::free(DVec3::from(point)), &Domain::Hemisphere(DVec3::Z), &options)?;
+        let time = start.elapsed().as_secs_f64();
+        let sums = image.form_factors().ok_or("a hemisphere has a normal")?;
+        factors += start.elapsed().as_secs_f64() - time;
+        view += time;
+        longest = longest.max(time);
+        worst = worst.max((sums.total() - 1.0).abs()).max(sums.background);
+        let stats = image.stats();
+        let row = [
+            image.cell_count(),
+            sums.polygons.len(),
+            stats.inserted,
+            stats.skipped_subtrees,
+            stats.visited_nodes as usize,
+            stats.undecided as usize,
+            stats.decided_by_integers as usize,
+        ];
+        counts.iter_mut().zip(row).for_each(|(sum, n)| *sum += n);
+    }
+    let milli = |seconds: f64| seconds * 1e3 / VIEWS as f64;
+    let means = counts.map(|sum| (sum / VIEWS).to_string()).join(" | ");
+    println!(
+        "| {kind} | {polygons} | {built:.3} | {} | {} | {:.2} | {:.2} | {:.2} | {means} | {worst:.0e} |",
+        bsp.stats().fragments,
+        bsp.stats().depth,
+        milli(view),
+        longest * 1e3,
+        milli(factors),
+    );
+    Ok(())
+}
