@@ -29,7 +29,7 @@ pub enum Projection {
     Gnomonic,
     /// From the opposite pole onto the tangent plane, the radius is tan(theta / 2): angles are kept,
     /// great circles are circles, the horizon is the unit circle. Of the whole sphere it shows the
-    /// square window that reaches 150 degrees to the right, left, top and bottom.
+    /// square window that reaches 135 degrees to the right, left, top and bottom.
     Stereographic,
     /// A panorama: longitude (to the right) and latitude, both in radians. Upright: see
     /// [`ViewFrame::panorama`].
@@ -65,7 +65,7 @@ pub enum ProjectionError {
 /// The half angle of the gnomonic window.
 const GNOMONIC_REACH: f64 = 75.0 / 180.0 * PI;
 /// How far from `towards` the stereographic window of a sphere reaches.
-const STEREOGRAPHIC_REACH: f64 = 150.0 / 180.0 * PI;
+const STEREOGRAPHIC_REACH: f64 = 135.0 / 180.0 * PI;
 
 /// A rectangle of the picture plane.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,6 +1,7 @@
 //! What is drawn over the colours: outlines, the contour tree, its legend.
 
 use super::{Canvas, PathData};
+use crate::bsp::{LineDef, LineId};
 use crate::contour::{Cell, ContourImage, Location, Splitter};
 use crate::scene::{PolygonId, VertexId};
 use glam::{DVec2, DVec3};
@@ -44,12 +45,12 @@ pub(super) fn outlines(image: &ContourImage, canvas: &Canvas<'_>, out: &mut impl
         let corners: Vec<DVec3> = cell.boundary().collect();
         for (k, (splitter, _)) in cell.splitters().enumerate() {
             let ends = [corners[k], corners[(k + 1) % corners.len()]];
-            let ends_here = match splitter {
+            let may_end = match splitter {
                 Splitter::Edge(edge) => own.contains(&(polygon, edge)),
-                Splitter::Crease(_) => differs_across(cell, ends),
+                Splitter::Crease(_) => true,
                 Splitter::Given(_) | Splitter::Parallel(_) => false,
             };
-            if ends_here {
+            if may_end && differs_across(cell, ends) {
                 add_arc(canvas, ends, &mut data);
             }
         }
@@ -67,15 +68,17 @@ fn write_path(class: &str, data: &PathData, out: &mut impl Write) -> io::Result<
     if data.is_empty() { Ok(()) } else { writeln!(out, r#"<path class="{class}" d="{data}"/>"#) }
 }
 
-/// The edges of all visible polygons' rings, without the diagonals of triangulations: beyond them the
-/// polygon is not seen.
+/// The lines that the edges of visible polygons are part of, each by the edge that stands for it. A
+/// polygon is not seen beyond its own edge; where another one hides it, that one's edge is drawn.
 fn own_edges(image: &ContourImage) -> HashSet<(PolygonId, [VertexId; 2])> {
     let scene = image.bsp().scene();
+    let skeleton = &image.bsp().tree.skeleton;
     let visible: HashSet<PolygonId> = image.cells().filter_map(|cell| cell.polygon()).collect();
     let edges = visible.into_iter().flat_map(|id| {
-        scene.polygon(id).rings().iter().flat_map(move |ring| {
-            let next = ring.iter().cycle().skip(1);
-            ring.iter().zip(next).map(move |(&a, &b)| (id, [a.min(b), a.max(b)]))
+        let edges = scene.polygon(id).pieces().flat_map(|piece| piece.edges());
+        edges.filter_map(move |edge| match skeleton.line(skeleton.representative(LineId(edge.0)).0) {
+            LineDef::Edge(ends) => Some((id, ends)),
+            LineDef::Crease(_) => None,
         })
     });
     edges.collect()

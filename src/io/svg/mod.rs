@@ -54,7 +54,9 @@ pub fn write_svg(image: &ContourImage, projector: &Projector, options: &SvgOptio
     head(image, projector, &visible, &mut out)?;
     writeln!(out, "<style>\n{}</style>", lines::STYLE)?;
     writeln!(out, r#"<rect width="{width}" height="{height}" fill="white"/>"#)?;
-    writeln!(out, r#"<g stroke-width="0.6" stroke-linejoin="round">"#)?;
+    // Pale below a tree.
+    let opacity = if options.show_tree { r#" opacity="0.55""# } else { "" };
+    writeln!(out, r#"<g stroke-width="1" stroke-linejoin="round"{opacity}>"#)?;
     let paint = Paint::new(image, projector.frame());
     for (polygon, cells) in &visible {
         canvas.polygon(image, *polygon, cells, &paint, &mut out)?;

@@ -1,7 +1,7 @@
 //! The colours of polygons in a picture.
 
 use crate::contour::{ContourImage, ViewFrame};
-use crate::scene::{PolygonId, PolygonRef};
+use crate::scene::{PolygonId, PolygonRef, Scene};
 use glam::DVec3;
 
 /// What is seen where nothing is.
@@ -15,10 +15,19 @@ pub(super) struct Paint<'a> {
 }
 
 impl<'a> Paint<'a> {
-    /// Light comes over the eye's right shoulder.
+    /// Light comes from over the eye's left shoulder.
     pub(super) fn new(image: &'a ContourImage, frame: ViewFrame) -> Self {
-        let light = (frame.towards() * 0.7 - frame.up() * 0.6 - frame.right() * 0.35).normalize();
+        let light = (frame.up() * 0.65 - frame.towards() * 0.6 - frame.right() * 0.35).normalize();
         Self { image, light }
+    }
+
+    /// The unit normal of a polygon, on the side that is seen.
+    fn normal_to_eye(&self, polygon: PolygonRef<'_>) -> DVec3 {
+        let scene = self.image.bsp().scene();
+        let normal = normal(scene, polygon);
+        let first = polygon.rings().first().and_then(|ring| ring.first());
+        let from_eye = first.map_or(DVec3::ZERO, |&v| scene.vertex(v) - self.image.viewpoint().eye());
+        if normal.dot(from_eye) > 0.0 { -normal } else { normal }
     }
 
     pub(super) fn of(&self, polygon: Option<PolygonId>) -> String {
@@ -31,9 +40,9 @@ impl<'a> Paint<'a> {
             DVec3::ONE.lerp(emission / emission.max_element(), 0.5)
         } else {
             let diffuse = DVec3::from(material.diffuse).min(DVec3::ONE);
-            let facing = normal(polygon).dot(self.light).abs();
+            let facing = self.normal_to_eye(polygon).dot(self.light);
             // A third of the way to grey, so that black is not a hole.
-            (diffuse * 0.92 + 0.04) * (0.35 + 0.65 * facing) * (0.94 + 0.12 * variation(polygon.object().0))
+            (diffuse * 0.92 + 0.04) * (0.55 + 0.45 * facing) * (0.94 + 0.12 * variation(polygon.object().0))
         };
         hex(colour)
     }
@@ -55,9 +64,7 @@ fn hex(linear: DVec3) -> String {
 }
 
 /// The unit normal of a polygon's outer ring (Newell), or zero.
-fn normal(polygon: PolygonRef<'_>) -> DVec3 {
-    let Some(piece) = polygon.pieces().next() else { return DVec3::ZERO };
-    let scene = piece.scene();
+fn normal(scene: &Scene, polygon: PolygonRef<'_>) -> DVec3 {
     let Some(ring) = polygon.rings().first() else { return DVec3::ZERO };
     let origin = scene.vertex(ring[0]);
     let offsets: Vec<DVec3> = ring.iter().map(|&v| scene.vertex(v) - origin).collect();
