@@ -1,7 +1,7 @@
 //! Contour images as JSON: `nusselt.contour/1`, as docs/cli.md defines it.
 
 use crate::contour::{ContourImage, Domain};
-use crate::integral::Sums;
+use crate::integral::{PolygonSum, Sums};
 use crate::scene::{ObjectId, Side};
 use serde::Serialize;
 use std::io::{self, BufWriter, Write};
@@ -96,7 +96,7 @@ impl<'a> ContourSummary<'a> {
         for (k, angle) in angles.polygons.iter().enumerate() {
             let polygon = scene.polygon(angle.polygon);
             let factor = factors.as_ref().map(|sums| sums.polygons[k]);
-            let share = Share { solid_angle: angle.both(), form_factor: factor.map(|sum| sum.both()) };
+            let share = Share { solid_angle: angle.both(), form_factor: factor.map(PolygonSum::both) };
             let sides = factor.unwrap_or(*angle);
             polygons.push(PolygonRow {
                 polygon: angle.polygon.0,

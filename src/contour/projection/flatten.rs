@@ -58,9 +58,9 @@ impl Projector {
             let mut line = Vec::new();
             if let [Some(start), Some(end)] = self.places_of_arc(arc) {
                 let sector = self.sector(&arc);
-                line.push(self.into_sector(start, sector));
+                line.push(self.within_sector(start, sector));
                 self.bend(arc, [start, end], sector, tolerance, DEPTH, &mut line);
-                push_new(&mut line, self.into_sector(end, sector));
+                push_new(&mut line, self.within_sector(end, sector));
             }
             if self.projection == Projection::Stereographic {
                 lines.extend(self.lines_inside_window(&line));
@@ -78,10 +78,10 @@ impl Projector {
         for (k, &from) in cell.iter().enumerate() {
             let to = cell[(k + 1) % cell.len()];
             if let [Some(start), Some(end)] = self.places_of_arc([from, to]) {
-                push_new(&mut path, self.into_sector(start, sector));
+                push_new(&mut path, self.within_sector(start, sector));
                 self.bend([from, to], [start, end], sector, tolerance, DEPTH, &mut path);
                 // At a pole the next arc starts elsewhere.
-                push_new(&mut path, self.into_sector(end, sector));
+                push_new(&mut path, self.within_sector(end, sector));
             }
         }
         while path.len() > 1 && path.first() == path.last() {
@@ -117,7 +117,7 @@ impl Projector {
     }
 
     /// Rounding, or the seam itself, may put a point on the other side of the picture.
-    fn into_sector(&self, p: DVec2, [low, high]: [f64; 2]) -> DVec2 {
+    fn within_sector(&self, p: DVec2, [low, high]: [f64; 2]) -> DVec2 {
         if self.projection != Projection::Equirectangular {
             return p;
         }
@@ -148,8 +148,8 @@ impl Projector {
             return;
         }
         let Some(middle) = (a + b).try_normalize() else { return };
-        let [p, q] = [p, q].map(|p| self.into_sector(p, sector));
-        let place = self.into_sector(self.place(middle), sector);
+        let [p, q] = [p, q].map(|p| self.within_sector(p, sector));
+        let place = self.within_sector(self.place(middle), sector);
         let off = place.distance(nearest_on_segment(place, p, q));
         if off <= tolerance && a.distance(b) <= LONG || !place.is_finite() {
             return;

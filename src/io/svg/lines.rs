@@ -3,7 +3,7 @@
 use super::{Canvas, PathData};
 use crate::bsp::{LineDef, LineId};
 use crate::contour::{Cell, ContourImage, Location, Splitter};
-use crate::scene::{PolygonId, VertexId};
+use crate::scene::{PieceRef, PolygonId, VertexId};
 use glam::{DVec2, DVec3};
 use std::collections::HashSet;
 use std::io::{self, Write};
@@ -73,9 +73,9 @@ fn write_path(class: &str, data: &PathData, out: &mut impl Write) -> io::Result<
 fn own_edges(image: &ContourImage) -> HashSet<(PolygonId, [VertexId; 2])> {
     let scene = image.bsp().scene();
     let skeleton = &image.bsp().tree.skeleton;
-    let visible: HashSet<PolygonId> = image.cells().filter_map(|cell| cell.polygon()).collect();
+    let visible: HashSet<PolygonId> = image.cells().filter_map(Cell::polygon).collect();
     let edges = visible.into_iter().flat_map(|id| {
-        let edges = scene.polygon(id).pieces().flat_map(|piece| piece.edges());
+        let edges = scene.polygon(id).pieces().flat_map(PieceRef::edges);
         edges.filter_map(move |edge| match skeleton.line(skeleton.representative(LineId(edge.0)).0) {
             LineDef::Edge(ends) => Some((id, ends)),
             LineDef::Crease(_) => None,

@@ -126,7 +126,7 @@ impl<'a> Canvas<'a> {
         image: &ContourImage,
         polygon: Option<PolygonId>,
         cells: &[CellId],
-        paint: &Paint,
+        paint: &Paint<'_>,
         out: &mut impl Write,
     ) -> io::Result<()> {
         let mut data = PathData::default();
