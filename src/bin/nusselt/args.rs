@@ -8,7 +8,7 @@ use std::num::NonZeroUsize;
 #[derive(clap::Args)]
 pub(crate) struct Common {
     /// Use this many threads; the results are the same for any number [default: all cores]
-    #[arg(long, global = true, value_name = "N")]
+    #[arg(long, global = true, value_name = "N", value_parser = parse_threads, allow_hyphen_values = true)]
     pub(crate) threads: Option<NonZeroUsize>,
     /// Print neither warnings nor a summary in words
     #[arg(long, global = true)]
@@ -35,6 +35,10 @@ pub(crate) struct Order {
     /// Leave polygons uncut that poke less than this through a splitting plane, in scene units; 0 is exact
     #[arg(long, value_name = "E", default_value = "0", value_parser = parse_epsilon, allow_hyphen_values = true)]
     pub(crate) epsilon: f64,
+}
+
+fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| "it takes a whole number of at least 1".to_owned())
 }
 
 fn parse_number(text: &str) -> Result<f64, String> {

@@ -24,6 +24,9 @@ pub(crate) fn of_clap(error: &clap::Error) -> Result<(), Failure> {
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
         return crate::output::print(&error.to_string());
     }
+    if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        return Err(Failure::Usage("say which subcommand to run (--help lists them)".to_owned()));
+    }
     let text = error.to_string();
     // The first paragraph says what is wrong, sometimes on several lines; usage and tips follow.
     let words: Vec<&str> = text.lines().take_while(|line| !line.trim().is_empty()).map(str::trim).collect();

@@ -43,7 +43,7 @@ pub(crate) struct Contour {
     #[arg(long)]
     sphere: bool,
     /// Stand on polygon K, where it is nearest to --eye, on its front or back, and see what is above
-    #[arg(long, value_name = "K[:back]", value_parser = parse_surface)]
+    #[arg(long, value_name = "K[:back]", value_parser = parse_surface, allow_hyphen_values = true)]
     on: Option<(PolygonId, Side)>,
     /// Take --eye as it is, even if it lies on a polygon
     #[arg(long, conflicts_with_all = ["sphere", "on"])]
