@@ -1,4 +1,40 @@
-//! Exact from-point visibility.
+//! Exact from-point visibility: the *contour image* of a scene of planar polygons.
+//!
+//! Seen from a point, a scene divides the directions around that point into convex cells, in each of
+//! which one polygon is seen, or nothing. This crate computes that subdivision exactly: no sampling, no
+//! resolution, no epsilon. From the cells follow solid angles and form factors (view factors), sky view
+//! factors, and drawings of what is seen.
+//!
+//! ```
+//! use nusselt::bsp::{BspOptions, SceneBsp};
+//! use nusselt::contour::{Domain, Viewpoint};
+//! use nusselt::samples::{Kind, generate};
+//! use nusselt::scene::{PolygonId, Side};
+//!
+//! let scene = generate(Kind::Room, 1_000, 1)?.to_builder().build()?; // or io::read_scene(path)
+//! let bsp = SceneBsp::build(&scene, &BspOptions::default())?; // once a scene, shared by threads
+//! let viewpoint = Viewpoint::on_surface(&scene, PolygonId(0), Side::Front, glam::DVec3::ZERO)?;
+//! let image = bsp.view(&viewpoint, &Domain::Above)?;
+//! let factors = image.form_factors().expect("a hemisphere has a normal");
+//! assert!((factors.total() - 1.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! The modules, from the lowest to the highest; none uses a higher one:
+//!
+//! | module | what it holds |
+//! | --- | --- |
+//! | [`exact`] | signs of real numbers, never rounded |
+//! | [`scene`] | polygons, objects, materials; building and checking them |
+//! | [`bsp`] | the 3D BSP: front-to-back order from any point |
+//! | [`contour`] | the 2D BSP on the sphere of directions, contour images and their cells |
+//! | [`integral`] | solid angles and form factors of cells |
+//! | [`samples`] | scenes of our own: a Cornell box and a generator |
+//! | [`io`] | reading scenes, writing results |
+//! | [`verify`] | an exact ray oracle that shares nothing with the engine |
+//!
+//! Source: P. Jacob, *Evaluation of a BRDF using BSP Trees*, Interner Bericht 272/95, University of
+//! Kaiserslautern, 1995.
 
 pub mod bsp;
 pub mod contour;

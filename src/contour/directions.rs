@@ -167,8 +167,17 @@ impl Directions {
         }
         cache.integer += 1;
         let normal = self.exact_normal(skeleton, c, cache);
-        let direction = self.exact_direction(skeleton, d, cache);
-        cache.arena.dot_sign(normal, direction)
+        match self.definitions[d.0 as usize] {
+            DirectionDef::Crossing { circles, reversed } => {
+                let [m, n] = circles.map(|circle| self.exact_normal(skeleton, circle, cache));
+                let [m, n] = if reversed { [n, m] } else { [m, n] };
+                cache.arena.det_sign(normal, m, n)
+            }
+            DirectionDef::Point(_) => {
+                let direction = self.exact_direction(skeleton, d, cache);
+                cache.arena.dot_sign(normal, direction)
+            }
+        }
     }
 
     fn exact_normal(&self, skeleton: &Skeleton, c: CircleId, cache: &mut ExactCache) -> Num3 {

@@ -4,7 +4,7 @@
 //! buffer keeps its capacity, so that a warmed-up arena does not touch the heap, and there is no
 //! width beyond which a result would be wrong: coordinates that span 2,000 bits just take longer.
 
-use super::Sign;
+use super::{Sign, fixed};
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -190,12 +190,74 @@ impl Arena {
         self.add(xy, z)
     }
 
-    /// The sign of a dot product; leaves nothing behind.
+    /// The sign of `a . b`; leaves nothing behind.
     pub(crate) fn dot_sign(&mut self, a: Num3, b: Num3) -> Sign {
-        let mark = self.mark();
-        let sign = self.dot(a, b).sign();
-        self.release(mark);
-        sign
+        macro_rules! fixed {
+            ($w:literal, $sum:literal) => {
+                fixed::dot_sign::<$w, $sum>(&self.fixed(a), &self.fixed(b))
+            };
+        }
+        match self.width(a).max(self.width(b)) {
+            0..=1 => fixed!(1, 3),
+            2 => fixed!(2, 5),
+            3 => fixed!(3, 7),
+            4 => fixed!(4, 9),
+            5..=6 => fixed!(6, 13),
+            7..=fixed::MOST_LIMBS => fixed!(8, 17),
+            _ => {
+                let mark = self.mark();
+                let sign = self.dot(a, b).sign();
+                self.release(mark);
+                sign
+            }
+        }
+    }
+
+    /// The sign of `a . (b x c)`; leaves nothing behind.
+    pub(crate) fn det_sign(&mut self, a: Num3, b: Num3, c: Num3) -> Sign {
+        macro_rules! fixed {
+            ($w:literal, $cross:literal, $sum:literal) => {
+                fixed::det_sign::<$w, $cross, $sum>(&self.fixed(a), &self.fixed(b), &self.fixed(c))
+            };
+        }
+        match self.width(a).max(self.width(b)).max(self.width(c)) {
+            0..=1 => fixed!(1, 2, 4),
+            2 => fixed!(2, 4, 7),
+            3 => fixed!(3, 6, 10),
+            4 => fixed!(4, 8, 13),
+            5..=6 => fixed!(6, 12, 19),
+            7..=fixed::MOST_LIMBS => fixed!(8, 16, 25),
+            _ => {
+                let mark = self.mark();
+                let cross = self.cross(b, c);
+                let sign = self.dot(a, cross).sign();
+                self.release(mark);
+                sign
+            }
+        }
+    }
+
+    /// How many limbs hold the components with a sign bit.
+    fn width(&self, v: Num3) -> usize {
+        let limbs = |n: Num| match self.limbs[Self::range(n)].last() {
+            None => 0,
+            Some(top) => n.len as usize + (top >> 63) as usize,
+        };
+        limbs(v[0]).max(limbs(v[1])).max(limbs(v[2]))
+    }
+
+    /// The vector in two's complement; `W` must be at least its width.
+    fn fixed<const W: usize>(&self, v: Num3) -> fixed::Fixed3<W> {
+        v.map(|n| {
+            let mut limbs = [0; W];
+            limbs[..n.len as usize].copy_from_slice(&self.limbs[Self::range(n)]);
+            let mask = if n.negative { u64::MAX } else { 0 };
+            let mut carry = n.negative;
+            for limb in &mut limbs {
+                (*limb, carry) = (*limb ^ mask).overflowing_add(u64::from(carry));
+            }
+            limbs
+        })
     }
 
     /// Moves a vector made since `mark` down to the mark and releases all else made since: what is
@@ -285,6 +347,18 @@ mod tests {
             prop_assert_eq!(big(&arena, difference), BigInt::from(c) - &exact);
             let zero = arena.sub(sum, sum);
             prop_assert_eq!(zero.sign(), Sign::Zero);
+            let vectors = [[x, y, w], [z, xyw, y], [sum, x, z], [difference, w, zero]];
+            for v in vectors {
+                for w in vectors {
+                    let exact = arena.dot(v, w).sign();
+                    prop_assert_eq!(arena.dot_sign(v, w), exact);
+                    for u in vectors {
+                        let cross = arena.cross(v, w);
+                        let exact = arena.dot(u, cross).sign();
+                        prop_assert_eq!(arena.det_sign(u, v, w), exact);
+                    }
+                }
+            }
             let direction = arena.direction([x, y, xyw]);
             prop_assert!(direction.abs().max_element() <= 1.0);
             prop_assert_eq!(Sign::of(direction.z), xyw.sign());

@@ -6,6 +6,7 @@
 mod approx;
 mod arena;
 mod ball;
+mod fixed;
 mod frame;
 mod orient;
 mod sign;
