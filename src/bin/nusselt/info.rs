@@ -4,7 +4,7 @@ use crate::args::{Common, Order};
 use crate::failure::Failure;
 use crate::input::{build, load};
 use crate::output::{is_same_file, print, print_json, write_obj};
-use crate::summary::{Lines, Timing};
+use crate::summary::{Lines, Timing, vector};
 use nusselt::bsp::SceneBsp;
 use nusselt::io::fragment_groups;
 use nusselt::scene::{MeshReport, PolygonId, Scene, Shape};
@@ -122,8 +122,7 @@ fn in_words(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing: Timing) 
     lines.add("objects", scene.objects().len());
     lines.add("materials", format!("{}, {} polygons emit", scene.materials().len(), emitters(scene)));
     if let Some((low, high)) = scene.bounds() {
-        let corner = |p: glam::DVec3| format!("{},{},{}", p.x, p.y, p.z);
-        lines.add("bounds", format!("{} to {}", corner(low), corner(high)));
+        lines.add("bounds", format!("{} to {}", vector(low), vector(high)));
     }
     let edges = [
         (report.open_edges.len(), "open"),

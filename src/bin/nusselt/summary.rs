@@ -23,6 +23,16 @@ impl Timing {
     }
 }
 
+/// A vector as one would type it.
+pub(crate) fn vector(v: glam::DVec3) -> String {
+    v.to_array().map(number).join(",")
+}
+
+/// The shortest number that reads as the same, with an exponent where it would be long otherwise.
+fn number(x: f64) -> String {
+    if x == 0.0 || (1e-5..1e12).contains(&x.abs()) { format!("{}", x + 0.0) } else { format!("{x:e}") }
+}
+
 /// Lines of a name and what there is to say about it.
 #[derive(Default)]
 pub(crate) struct Lines(pub(crate) String);

@@ -1,5 +1,6 @@
 //! What is drawn over the colours: outlines, the contour tree, its legend.
 
+use super::paint::Paint;
 use super::{Canvas, PathData};
 use crate::bsp::{LineDef, LineId};
 use crate::contour::{Cell, ContourImage, Location, Splitter};
@@ -9,8 +10,9 @@ use std::collections::HashSet;
 use std::io::{self, Write};
 
 pub(super) const STYLE: &str = "\
-.outline,.given,.edge,.crease,.horizon,.border{fill:none;stroke-linecap:round;stroke-linejoin:round}
+.outline,.seam,.given,.edge,.crease,.horizon,.border{fill:none;stroke-linecap:round;stroke-linejoin:round}
 .outline{stroke:#222;stroke-width:.7}
+.seam{stroke:#222;stroke-width:.35;stroke-opacity:.5}
 .border{stroke:#222;stroke-width:1.2}
 .given{stroke:#1f6fd0;stroke-width:.8;stroke-dasharray:5 3}
 .edge{stroke:#c62828;stroke-width:.6}
@@ -36,10 +38,16 @@ fn kind(splitter: &Splitter) -> usize {
     }
 }
 
-/// Lines where another polygon begins.
-pub(super) fn outlines(image: &ContourImage, canvas: &Canvas<'_>, out: &mut impl Write) -> io::Result<()> {
+/// Lines where another polygon begins: thin ones between polygons that look the same, so that finely
+/// meshed surfaces stay light.
+pub(super) fn outlines(
+    image: &ContourImage,
+    canvas: &Canvas<'_>,
+    paint: &Paint<'_>,
+    out: &mut impl Write,
+) -> io::Result<()> {
     let own = own_edges(image);
-    let mut data = PathData::default();
+    let [mut outline, mut seam] = [PathData::default(), PathData::default()];
     for cell in image.cells() {
         let Some(polygon) = cell.polygon() else { continue };
         let corners: Vec<DVec3> = cell.boundary().collect();
@@ -50,12 +58,15 @@ pub(super) fn outlines(image: &ContourImage, canvas: &Canvas<'_>, out: &mut impl
                 Splitter::Crease(_) => true,
                 Splitter::Given(_) | Splitter::Parallel(_) => false,
             };
-            if may_end && differs_across(cell, ends) {
-                add_arc(canvas, ends, &mut data);
+            let Some(other) = (if may_end { across(cell, ends) } else { None }) else { continue };
+            if other.polygon() != Some(polygon) {
+                let same = paint.of(other.polygon()) == paint.of(Some(polygon));
+                add_arc(canvas, ends, if same { &mut seam } else { &mut outline });
             }
         }
     }
-    write_path("outline", &data, out)
+    write_path("seam", &seam, out)?;
+    write_path("outline", &outline, out)
 }
 
 fn add_arc(canvas: &Canvas<'_>, ends: [DVec3; 2], data: &mut PathData) {
@@ -84,13 +95,12 @@ fn own_edges(image: &ContourImage) -> HashSet<(PolygonId, [VertexId; 2])> {
     edges.collect()
 }
 
-/// Whether another polygon is seen just across the middle of a side.
-fn differs_across(cell: Cell<'_>, [a, b]: [DVec3; 2]) -> bool {
+/// The cell just across the middle of a side; `None` if the domain ends there.
+fn across(cell: Cell<'_>, [a, b]: [DVec3; 2]) -> Option<Cell<'_>> {
     let outwards = b.cross(a).normalize_or_zero();
-    let across = (a + b).normalize_or_zero() + outwards * 1e-7;
-    match cell.image().locate(across) {
-        Location::Cell(other) => cell.image().cell(other).polygon() != cell.polygon(),
-        Location::Boundary | Location::Outside => false,
+    match cell.image().locate((a + b).normalize_or_zero() + outwards * 1e-7) {
+        Location::Cell(other) => Some(cell.image().cell(other)),
+        Location::Boundary | Location::Outside => None,
     }
 }
 

@@ -36,7 +36,7 @@ const TOLERANCE: f64 = 0.1;
 ///
 /// Every visible polygon is one path `polygon_K` in its material's diffuse colour, shaded by how it
 /// faces the eye; emitters show the hue of what they emit; background is light blue. Thin lines mark
-/// where another polygon begins.
+/// where another polygon begins, very thin ones where it looks the same.
 ///
 /// # Errors
 /// Those of `out`.
@@ -62,7 +62,7 @@ pub fn write_svg(image: &ContourImage, projector: &Projector, options: &SvgOptio
         canvas.polygon(image, *polygon, cells, &paint, &mut out)?;
     }
     writeln!(out, "</g>")?;
-    lines::outlines(image, &canvas, &mut out)?;
+    lines::outlines(image, &canvas, &paint, &mut out)?;
     if options.show_tree {
         lines::tree(image, &canvas, &mut out)?;
         lines::legend(DVec2::new(MARGIN, size.y - LEGEND / 2.0), &mut out)?;

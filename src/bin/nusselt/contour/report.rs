@@ -1,6 +1,6 @@
 //! The summary of a contour image, as JSON and in words.
 
-use crate::summary::{Lines, Timing};
+use crate::summary::{Lines, Timing, vector};
 use nusselt::contour::{ContourImage, Domain, ViewStats};
 use nusselt::io::{ContourSummary, Share};
 use nusselt::scene::Side;
@@ -45,7 +45,6 @@ impl<'a> Printed<'a> {
 const LISTED: usize = 20;
 
 pub(super) fn in_words(image: &ContourImage, summary: &ContourSummary<'_>, timing: Timing) -> Lines {
-    let vector = |v: glam::DVec3| format!("{},{},{}", v.x, v.y, v.z);
     let mut lines = Lines::default();
     let eye = vector(image.viewpoint().eye());
     let on = image.viewpoint().surface().map(|(polygon, side)| {
