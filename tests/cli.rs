@@ -77,7 +77,7 @@ fn close(a: f64, b: f64) -> bool {
     (a - b).abs() <= 1e-12 * b.abs().max(1.0)
 }
 
-/// What docs/cli.md promises of `nusselt.contour/1`.
+/// What every file of schema `nusselt.contour/1` keeps to.
 fn check_contour(image: &Value, hemisphere: bool) {
     assert_eq!(image["schema"], "nusselt.contour/1");
     assert_eq!(numbers(&image["eye"]).len(), 3);
@@ -185,7 +185,7 @@ fn a_point_on_a_polygon_is_found_to_be_on_it() {
     assert_eq!(numbers(&front["domain"]["normal"]), [0.0, 1.0, 0.0]);
     assert!(front["background"]["form_factor"].as_f64().expect("a number") < 0.5);
     let back = on("100,50,100 --on 0:back");
-    assert_eq!(numbers(&back["domain"]["normal"]).iter().map(|x| x + 0.0).collect::<Vec<_>>(), [0.0, -1.0, 0.0]);
+    assert_eq!(back["domain"]["normal"].to_string(), "[0.0,-1.0,0.0]");
     assert_eq!(back["polygons"].as_array().map(Vec::len), Some(0));
 }
 

@@ -1,4 +1,4 @@
-//! Contour images as JSON: `nusselt.contour/1`, as docs/cli.md defines it.
+//! Contour images as JSON: schema `nusselt.contour/1`.
 
 use crate::contour::{ContourImage, Domain};
 use crate::integral::{PolygonSum, Sums};
@@ -141,7 +141,8 @@ fn domain_row(image: &ContourImage) -> DomainRow {
         Domain::Hemisphere(normal) => Some(*normal),
         Domain::Above => image.normal(),
     };
-    normal.map_or(DomainRow::Sphere, |normal| DomainRow::Hemisphere { normal: normal.to_array() })
+    // Adding 0 turns -0 into 0.
+    normal.map_or(DomainRow::Sphere, |normal| DomainRow::Hemisphere { normal: (normal + 0.0).to_array() })
 }
 
 #[derive(Serialize)]
