@@ -56,7 +56,8 @@ pub(super) fn in_words(image: &ContourImage, summary: &ContourSummary<'_>, timin
     match image.domain() {
         Domain::Sphere => lines.add("domain", "sphere"),
         Domain::Above => lines.add("domain", "hemisphere above the polygon"),
-        _ => lines.add("domain", format!("hemisphere about {}", image.normal().map(vector).unwrap_or_default())),
+        Domain::Hemisphere(normal) => lines.add("domain", format!("hemisphere about {}", vector(*normal))),
+        _ => lines.add("domain", "other"),
     }
     let [polygons, objects] = [summary.polygons.len(), summary.objects.len()];
     lines.add("seen", format!("{polygons} polygons of {objects} objects, in {} cells", image.cell_count()));
