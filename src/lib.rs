@@ -44,3 +44,7 @@ pub mod io;
 pub mod samples;
 pub mod scene;
 pub mod verify;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

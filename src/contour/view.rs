@@ -139,10 +139,9 @@ fn horizon(
 /// Levels of the quadtree for a scene of that size, by measurement (docs/performance.md).
 fn default_depth(polygons: usize) -> u32 {
     match polygons {
-        0..200 => 1,
-        200..2_000 => 2,
-        2_000..20_000 => 3,
-        _ => 4,
+        0..5_000 => 1,
+        5_000..30_000 => 2,
+        _ => 3,
     }
 }
 
