@@ -58,7 +58,7 @@ pub(crate) struct Directions {
     frame: Frame,
     circles: Vec<CircleDef>,
     normals: Vec<Approx3>,
-    directions: Vec<LooseDirection>,
+    known: Vec<LooseDirection>,
 }
 
 /// Integers that were needed once and may be needed again.
@@ -81,13 +81,7 @@ impl ExactCache {
 
 impl Directions {
     pub(crate) fn new(skeleton: &Skeleton, eye: DVec3) -> Self {
-        Self {
-            eye,
-            frame: Frame::new(skeleton.bits, eye),
-            circles: Vec::new(),
-            normals: Vec::new(),
-            directions: Vec::new(),
-        }
+        Self { eye, frame: Frame::new(skeleton.bits, eye), circles: Vec::new(), normals: Vec::new(), known: Vec::new() }
     }
 
     fn push_circle(
@@ -152,8 +146,8 @@ impl Directions {
     }
 
     fn push(&mut self, direction: LooseDirection) -> DirectionId {
-        self.directions.push(direction);
-        DirectionId(self.directions.len() as u32 - 1)
+        self.known.push(direction);
+        DirectionId(self.known.len() as u32 - 1)
     }
 
     /// The direction `n_1 x n_2`, or the opposite one.
@@ -182,13 +176,13 @@ impl Directions {
     }
 
     pub(crate) fn direction(&self, d: DirectionId) -> LooseDirection {
-        self.directions[d.0 as usize]
+        self.known[d.0 as usize]
     }
 
     /// On which side of the great circle the direction lies, exactly.
     #[inline]
     pub(crate) fn side(&self, skeleton: &Skeleton, d: DirectionId, c: CircleId, cache: &mut ExactCache) -> Sign {
-        self.side_of(skeleton, &self.directions[d.0 as usize], c, cache)
+        self.side_of(skeleton, &self.known[d.0 as usize], c, cache)
     }
 
     /// The same for a direction that was not kept.
@@ -269,7 +263,7 @@ impl Directions {
 
     /// The direction as a unit vector.
     pub(crate) fn unit(&self, d: DirectionId) -> DVec3 {
-        self.directions[d.0 as usize].approx.v.normalize_or_zero()
+        self.known[d.0 as usize].approx.v.normalize_or_zero()
     }
 
     /// The normal of a great circle in floating point: `n . d > 0` is its positive side.
