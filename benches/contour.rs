@@ -56,7 +56,7 @@ fn quadtree(c: &mut Criterion) {
     let (mesh, scene) = sample(Kind::Room, 10_000);
     let bsp = SceneBsp::build(&scene, &BspOptions::default()).expect("epsilon is 0");
     for depth in 0..=6 {
-        let options = ViewOptions { quadtree_depth: Some(depth) };
+        let options = ViewOptions { quadtree_depth: Some(depth), ..ViewOptions::default() };
         let mut eyes = mesh.free_points(20, 3).into_iter().map(DVec3::from).cycle();
         group.bench_function(BenchmarkId::from_parameter(depth), |b| {
             b.iter(|| {

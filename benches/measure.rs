@@ -37,7 +37,7 @@ fn row(kind: Kind, polygons: usize, depth: Option<u32>) -> Result<(), Box<dyn Er
     let start = Instant::now();
     let bsp = SceneBsp::build(&scene, &BspOptions::default())?;
     let built = start.elapsed().as_secs_f64();
-    let options = ViewOptions { quadtree_depth: depth };
+    let options = ViewOptions { quadtree_depth: depth, ..ViewOptions::default() };
     let (mut view, mut longest, mut factors, mut worst) = (0.0, 0.0f64, 0.0, 0.0f64);
     let mut counts = [0; 7];
     for point in mesh.free_points(VIEWS, 3) {

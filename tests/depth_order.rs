@@ -4,8 +4,8 @@ mod common;
 
 use common::{Faces, Random, cluttered_room};
 use glam::{DQuat, DVec3};
-use nusselt::bsp::{BspOptions, FragmentRef, SceneBsp};
-use nusselt::contour::{ContourImage, Domain, Location, Viewpoint};
+use nusselt::bsp::{BspError, BspOptions, FragmentRef, SceneBsp};
+use nusselt::contour::{ContourImage, Domain, Location, ViewError, ViewOptions, Viewpoint};
 use nusselt::scene::{PolygonId, Scene, Side};
 use nusselt::verify::{RayAnswer, RayOracle};
 
@@ -151,15 +151,15 @@ fn of_coplanar_fronts_that_overlap_the_lowest_number_is_seen() {
 fn with_epsilon_the_cells_still_tile() {
     let scene = cluttered_room(80, 5).build();
     for epsilon in [1e-9, 1e-3, 0.3] {
-        let bsp = SceneBsp::build(&scene, &BspOptions { epsilon }).unwrap();
+        let bsp = SceneBsp::build(&scene, &BspOptions { epsilon, ..BspOptions::default() }).unwrap();
         assert_eq!(bsp.uncut_slivers().len(), bsp.stats().uncut_slivers);
         let image = bsp.view(&Viewpoint::free(DVec3::new(9.0, 0.1, 0.2)), &Domain::Sphere).unwrap();
         assert!((image.solid_angles().total() - 4.0 * std::f64::consts::PI).abs() < 1e-11);
     }
-    let bsp = SceneBsp::build(&scene, &BspOptions { epsilon: 0.3 }).unwrap();
+    let bsp = SceneBsp::build(&scene, &BspOptions { epsilon: 0.3, ..BspOptions::default() }).unwrap();
     assert!(bsp.stats().uncut_slivers > 0);
-    assert!(SceneBsp::build(&scene, &BspOptions { epsilon: f64::NAN }).is_err());
-    assert!(SceneBsp::build(&scene, &BspOptions { epsilon: -1.0 }).is_err());
+    assert!(SceneBsp::build(&scene, &BspOptions { epsilon: f64::NAN, ..BspOptions::default() }).is_err());
+    assert!(SceneBsp::build(&scene, &BspOptions { epsilon: -1.0, ..BspOptions::default() }).is_err());
 }
 
 #[test]
@@ -174,4 +174,36 @@ fn the_two_traversals_mirror_each_other() {
         assert_eq!(front, back);
         assert!(front.len() <= bsp.fragment_count());
     }
+}
+
+/// `n` long triangles that all pass through each other.
+fn crossing_slats(n: usize) -> Faces {
+    let mut faces = Faces::default();
+    let mut random = Random(8);
+    for _ in 0..n {
+        let (along, across) = (random.direction().normalize(), random.direction().normalize());
+        let across = along.cross(across).normalize();
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let offset = random.in_cube(0.3);
+        let slat = corners.map(|[x, y]| offset + along * (10.0 * x) + across * (0.5 * y));
+        faces.face(&slat[..3]);
+    }
+    faces
+}
+
+#[test]
+fn limits_end_with_an_error() {
+    let scene = crossing_slats(60).build();
+    let limited = BspOptions { max_fragments: 100, ..BspOptions::default() };
+    let error = SceneBsp::build(&scene, &limited).unwrap_err();
+    assert_eq!(error, BspError::TooManyFragments { limit: 100 });
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    let limited = ViewOptions { max_cells: 100, ..ViewOptions::default() };
+    let eye = Viewpoint::free(DVec3::new(3.0, 2.0, 20.0));
+    let error = bsp.view_with(&eye, &Domain::Sphere, &limited).unwrap_err();
+    assert_eq!(error, ViewError::TooManyCells { limit: 100 });
+    let image = bsp.view(&eye, &Domain::Sphere).unwrap();
+    let oracle = RayOracle::new(&scene);
+    let mut random = Random(3);
+    assert!(compare(&image, &oracle, (0..2_000).map(|_| random.in_cube(5.0) - eye.eye())) > 1_990);
 }

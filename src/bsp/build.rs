@@ -14,11 +14,15 @@ pub struct BspOptions {
     /// A fragment that pokes less than this through a splitting plane, in scene units, is not cut
     /// there. The default is 0: exact order from every viewpoint.
     pub epsilon: f64,
+    /// Building ends with an error when splits have made more fragments than this: polygons that all
+    /// pass through each other make about the square of their number. The default, 2^24, takes
+    /// about 4 GiB.
+    pub max_fragments: usize,
 }
 
 impl Default for BspOptions {
     fn default() -> Self {
-        Self { epsilon: 0.0 }
+        Self { epsilon: 0.0, max_fragments: 1 << 24 }
     }
 }
 
@@ -31,6 +35,12 @@ pub enum BspError {
     BadEpsilon {
         /// The value given.
         epsilon: f64,
+    },
+    /// The scene falls into too many fragments.
+    #[error("the scene's polygons cut each other into more than {limit} fragments; simplify it, or allow more")]
+    TooManyFragments {
+        /// How many are allowed.
+        limit: usize,
     },
 }
 
@@ -55,7 +65,7 @@ impl SceneBsp {
     /// Builds the tree of a scene: about `n log n` time and memory for `n` polygons.
     ///
     /// # Errors
-    /// If epsilon is not a finite number of at least 0.
+    /// If epsilon is not a finite number of at least 0, or if there are too many fragments.
     pub fn build(scene: &Scene, options: &BspOptions) -> Result<Self, BspError> {
         let epsilon = options.epsilon;
         if !(epsilon.is_finite() && epsilon >= 0.0) {
@@ -70,8 +80,9 @@ impl SceneBsp {
             slivers: Vec::new(),
             stats: BspStats::default(),
             epsilon,
+            max_fragments: options.max_fragments,
         };
-        builder.run(scene);
+        builder.run(scene)?;
         let Builder { skeleton, mut nodes, fragments, sides, slivers, mut stats, .. } = builder;
         // A child has a higher number than its parent.
         for k in (0..nodes.len()).rev() {
@@ -96,10 +107,11 @@ struct Builder {
     slivers: Vec<UncutSliver>,
     stats: BspStats,
     epsilon: f64,
+    max_fragments: usize,
 }
 
 impl Builder {
-    fn run(&mut self, scene: &Scene) {
+    fn run(&mut self, scene: &Scene) -> Result<(), BspError> {
         let items: Vec<Item> = scene
             .pieces()
             .map(|piece| {
@@ -113,7 +125,11 @@ impl Builder {
             if !job.items.is_empty() {
                 self.make_node(job, &mut jobs);
             }
+            if scene.piece_count() + self.stats.splits > self.max_fragments {
+                return Err(BspError::TooManyFragments { limit: self.max_fragments });
+            }
         }
+        Ok(())
     }
 
     fn make_node(&mut self, Job { items, depth, link }: Job, jobs: &mut Vec<Job>) {
@@ -167,7 +183,7 @@ impl Builder {
         let candidates: Vec<Candidate<'_>> =
             items.iter().map(|item| Candidate { bounds: item.bounds, own: item.own, sides: &item.sides }).collect();
         let skeleton = &self.skeleton;
-        match choose(skeleton, &candidates, &|x| skeleton.bits.holds(x)) {
+        match choose(skeleton, &candidates, &|x| x.is_finite() && skeleton.bits.holds(x)) {
             Choice::Polygon(plane) => plane,
             Choice::Axis(axis, value) => self.skeleton.axis_plane(axis, value),
         }

@@ -181,7 +181,7 @@ fn the_quadtree_changes_no_sum() {
     let viewpoint = Viewpoint::free(DVec3::new(0.1, 0.2, 0.3));
     let sums: Vec<_> = (0..5)
         .map(|depth| {
-            let options = super::ViewOptions { quadtree_depth: Some(depth) };
+            let options = super::ViewOptions { quadtree_depth: Some(depth), ..Default::default() };
             let image = bsp.view_with(&viewpoint, &Domain::Hemisphere(DVec3::new(1.0, 2.0, 3.0)), &options).unwrap();
             check(&image);
             image.form_factors().unwrap()

@@ -13,11 +13,20 @@ use crate::scene::Side;
 use glam::DVec3;
 
 /// How a view is made. None of it changes what is seen, only the cost and how cells are cut.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ViewOptions {
     /// Levels of the quadtree at the top of the contour tree: 0 for octants only, 1 for quarter faces
     /// of a cube, each further one quarters those. `None` chooses by the size of the scene. At most 8.
     pub quadtree_depth: Option<u32>,
+    /// The view ends with an error when it has more cells than this: edges that all cross each other, as
+    /// seen from the eye, make about the square of their number. The default, 2^25, takes about 5 GiB.
+    pub max_cells: usize,
+}
+
+impl Default for ViewOptions {
+    fn default() -> Self {
+        Self { quadtree_depth: None, max_cells: 1 << 25 }
+    }
 }
 
 /// Why there is no view.
@@ -38,6 +47,12 @@ pub enum ViewError {
     TooDeep {
         /// The levels asked for.
         depth: u32,
+    },
+    /// The view falls into too many cells.
+    #[error("what is seen falls into more than {limit} cells; simplify the scene, or allow more")]
+    TooManyCells {
+        /// How many are allowed.
+        limit: usize,
     },
 }
 
@@ -68,7 +83,8 @@ impl SceneBsp {
     /// The same with options.
     ///
     /// # Errors
-    /// As [`SceneBsp::view`]; also if the quadtree is to have too many levels.
+    /// As [`SceneBsp::view`]; also if the quadtree is to have too many levels, or if there are too many
+    /// cells.
     pub fn view_with(
         &self,
         viewpoint: &Viewpoint,
@@ -101,7 +117,7 @@ impl SceneBsp {
             polygon: Vec::new(),
             stats: ViewStats::default(),
         };
-        builder.walk();
+        builder.walk(options.max_cells)?;
         let ViewBuilder { contour, work, mut stats, .. } = builder;
         stats.visited_nodes = work.visited;
         stats.undecided = work.knife.cache.undecided;
@@ -160,13 +176,16 @@ struct ViewBuilder<'a> {
 }
 
 impl ViewBuilder<'_> {
-    fn walk(&mut self) {
+    fn walk(&mut self, max_cells: usize) -> Result<(), ViewError> {
         let tree = self.tree;
         let mut stack = if tree.nodes.is_empty() { Vec::new() } else { vec![Step::Subtree(0)] };
         let mut fragments = Vec::new();
         while let Some(step) = stack.pop() {
+            if self.contour.leaves.len() > max_cells {
+                return Err(ViewError::TooManyCells { limit: max_cells });
+            }
             if !self.contour.is_open() {
-                return;
+                break;
             }
             match step {
                 Step::Subtree(node) => {
@@ -185,6 +204,7 @@ impl ViewBuilder<'_> {
                 }
             }
         }
+        Ok(())
     }
 
     fn insert(&mut self, id: FragmentId) {

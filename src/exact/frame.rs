@@ -118,10 +118,16 @@ impl Frame {
     }
 
     /// The position `origin + x / w` in scene units with a bound on the error of each coordinate.
-    pub(crate) fn position(&self, arena: &Arena, x: Num3, w: Num) -> (DVec3, DVec3) {
-        let offset = DVec3::from(x.map(|x| arena.quotient(x, w, self.unit)));
-        let position = self.origin + offset;
-        (position, offset.abs() * (10.0 * U) + position.abs() * (2.0 * U) + f64::MIN_POSITIVE)
+    pub(crate) fn position(&self, arena: &mut Arena, x: Num3, w: Num) -> (DVec3, DVec3) {
+        let mark = arena.mark();
+        let position = DVec3::from([0, 1, 2].map(|axis| {
+            let origin = self.coordinate(arena, self.origin[axis]);
+            let scaled = arena.mul(origin, w);
+            let sum = arena.add(scaled, x[axis]);
+            arena.quotient(sum, w, self.unit)
+        }));
+        arena.release(mark);
+        (position, position.abs() * (10.0 * U) + f64::MIN_POSITIVE)
     }
 }
 

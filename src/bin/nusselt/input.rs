@@ -22,7 +22,7 @@ pub(crate) fn load(path: &Path, common: &Common) -> Result<(Scene, f64), Failure
 /// Its 3D BSP, and how many seconds building it took.
 pub(crate) fn build(scene: &Scene, order: &Order) -> Result<(SceneBsp, f64), Failure> {
     let start = Instant::now();
-    let options = BspOptions { epsilon: order.epsilon };
+    let options = BspOptions { epsilon: order.epsilon, ..BspOptions::default() };
     let bsp = SceneBsp::build(scene, &options).map_err(|error| Failure::Work(error.to_string()))?;
     Ok((bsp, start.elapsed().as_secs_f64()))
 }

@@ -105,7 +105,7 @@ impl Contour {
         let (viewpoint, domain) = self.stand(&scene)?;
         let (bsp, bsp_s) = build(&scene, &self.order)?;
         let start = Instant::now();
-        let options = ViewOptions { quadtree_depth: self.quadtree_depth };
+        let options = ViewOptions { quadtree_depth: self.quadtree_depth, ..ViewOptions::default() };
         let image = bsp.view_with(&viewpoint, &domain, &options).map_err(|e| Failure::Work(e.to_string()))?;
         let view_ms = start.elapsed().as_secs_f64() * 1e3;
         let timing = Timing::new(load_s, bsp_s, &[view_ms]);
