@@ -177,23 +177,22 @@ fn the_two_traversals_mirror_each_other() {
 }
 
 /// `n` long triangles that all pass through each other.
-fn crossing_slats(n: usize) -> Faces {
+fn crossing_slivers(n: usize) -> Faces {
     let mut faces = Faces::default();
     let mut random = Random(8);
     for _ in 0..n {
-        let (along, across) = (random.direction().normalize(), random.direction().normalize());
-        let across = along.cross(across).normalize();
-        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        let along = random.direction().normalize();
+        let across = along.cross(random.direction()).normalize();
         let offset = random.in_cube(0.3);
-        let slat = corners.map(|[x, y]| offset + along * (10.0 * x) + across * (0.5 * y));
-        faces.face(&slat[..3]);
+        let corners = [[-10.0, -0.5], [10.0, -0.5], [10.0, 0.5]];
+        faces.face(&corners.map(|[x, y]| offset + along * x + across * y));
     }
     faces
 }
 
 #[test]
 fn limits_end_with_an_error() {
-    let scene = crossing_slats(60).build();
+    let scene = crossing_slivers(60).build();
     let limited = BspOptions { max_fragments: 100, ..BspOptions::default() };
     let error = SceneBsp::build(&scene, &limited).unwrap_err();
     assert_eq!(error, BspError::TooManyFragments { limit: 100 });
