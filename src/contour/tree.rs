@@ -99,7 +99,7 @@ impl ContourTree {
                 let third = 3 - a - b;
                 PolygonArc { from: corner(a), along: HalfSphere::new(planes[third], signs[third]) }
             });
-            return self.push_leaf(&arcs, LeafState::Open, parent);
+            return self.push_leaf(&arcs, parent);
         }
         let node = self.nodes.len() as u32;
         let unset = Link::Leaf(u32::MAX);
@@ -115,11 +115,17 @@ impl ContourTree {
         Link::Node(node)
     }
 
-    fn push_leaf(&mut self, arcs: &[PolygonArc], state: LeafState, parent: Option<u32>) -> Link {
-        let leaf = Leaf { state, start: self.arcs.len() as u32, len: arcs.len() as u32, parent };
-        self.arcs.extend_from_slice(arcs);
+    fn push_leaf(&mut self, boundary: &[PolygonArc], parent: Option<u32>) -> Link {
+        let leaf = self.open_leaf(boundary, parent);
         self.leaves.push(leaf);
         Link::Leaf(self.leaves.len() as u32 - 1)
+    }
+
+    /// Keeps a boundary and gives the open leaf that has it.
+    fn open_leaf(&mut self, boundary: &[PolygonArc], parent: Option<u32>) -> Leaf {
+        let start = self.arcs.len() as u32;
+        self.arcs.extend_from_slice(boundary);
+        Leaf { state: LeafState::Open, start, len: boundary.len() as u32, parent }
     }
 
     /// The boundary of a leaf.
@@ -210,11 +216,8 @@ impl ContourTree {
         let node = self.nodes.len() as u32;
         self.replace(parent, Link::Leaf(leaf), Link::Node(node));
         // The leaf itself becomes the negative child, so that no leaf is ever out of the tree.
-        let positive = self.push_leaf(&work.positive, LeafState::Open, Some(node));
-        let start = self.arcs.len() as u32;
-        self.arcs.extend_from_slice(&work.negative);
-        self.leaves[leaf as usize] =
-            Leaf { state: LeafState::Open, start, len: work.negative.len() as u32, parent: Some(node) };
+        let positive = self.push_leaf(&work.positive, Some(node));
+        self.leaves[leaf as usize] = self.open_leaf(&work.negative, Some(node));
         self.nodes.push(TreeNode { circle: half.circle(), negative: Link::Leaf(leaf), positive, parent, open: true });
         let Link::Leaf(positive) = positive else { return [None, None] };
         if half.inside().is_positive() { [Some(positive), Some(leaf)] } else { [Some(leaf), Some(positive)] }
@@ -337,13 +340,7 @@ impl ContourTree {
             self.replace(parent, here, Link::Node(node));
             let (outside, kept) =
                 if inside.is_positive() { (&work.negative, &work.positive) } else { (&work.positive, &work.negative) };
-            let outside = {
-                let start = self.arcs.len() as u32;
-                self.arcs.extend_from_slice(outside);
-                let leaf = Leaf { state: LeafState::Open, start, len: outside.len() as u32, parent: Some(node) };
-                self.leaves.push(leaf);
-                Link::Leaf(self.leaves.len() as u32 - 1)
-            };
+            let outside = self.push_leaf(outside, Some(node));
             work.region.clear();
             work.region.extend_from_slice(kept);
             here = Link::Leaf(leaf);
@@ -351,9 +348,7 @@ impl ContourTree {
             self.nodes.push(TreeNode { circle, negative, positive, parent, open: true });
             parent = Some(node);
         }
-        let start = self.arcs.len() as u32;
-        self.arcs.extend_from_slice(&work.arcs[polygon.clone()]);
-        self.leaves[leaf as usize] = Leaf { state: LeafState::Open, start, len: polygon.len() as u32, parent };
+        self.leaves[leaf as usize] = self.open_leaf(&work.arcs[polygon], parent);
         self.close(leaf, LeafState::Filled(fragment));
     }
 
