@@ -7,7 +7,7 @@ use geo::{Area, BooleanOps, Coord, LineString, MultiPolygon, Polygon};
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::contour::{Domain, Viewpoint};
-use nusselt::scene::PolygonId;
+use nusselt::scene::{PieceRef, PolygonId};
 
 /// Where a direction meets the plane at height 1.
 fn gnomonic(d: DVec3) -> Coord {
@@ -49,7 +49,7 @@ fn visible_areas_of_stacked_triangles_are_those_of_polygon_booleans() {
         }
         let mut hidden = MultiPolygon::new(Vec::new());
         for (k, area) in ours.into_iter().enumerate() {
-            let whole = polygon(scene.polygon(PolygonId(k as u32)).pieces().flat_map(|piece| piece.points()));
+            let whole = polygon(scene.polygon(PolygonId(k as u32)).pieces().flat_map(PieceRef::points));
             let whole = MultiPolygon::new(vec![whole]);
             let expected = whole.difference(&hidden).unsigned_area();
             assert!((area - expected).abs() < TOLERANCE, "polygon {k} of {count}: {area}, by geo {expected}");
