@@ -2,7 +2,7 @@
 //! contour tree: on which side of a great circle a direction lies.
 
 use crate::bsp::{LineDef, LineId, PointId, Skeleton, Tree};
-use crate::exact::{Approx3, Arena, Frame, Num3, Sign, U, given_vector};
+use crate::exact::{self, Approx3, Arena, Constructor, Frame, Num3, Sign, U};
 use crate::scene::{PlaneId, SupportingPlane, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -186,11 +186,12 @@ impl Directions {
         }
         let arena = &mut cache.arena;
         let mark = arena.mark();
-        let normal = match self.circles[c.0 as usize] {
-            CircleDef::Line(line) => skeleton.exact_line_normal(&self.frame, arena, line),
-            CircleDef::Given(normal) => given_vector(arena, normal),
-            CircleDef::Parallel(plane) => skeleton.exact_plane(&self.frame, arena, plane).0,
+        let definition = match self.circles[c.0 as usize] {
+            CircleDef::Line(line) => skeleton.resolved_line(line),
+            CircleDef::Given(normal) => exact::Splitter::Given(normal),
+            CircleDef::Parallel(plane) => exact::Splitter::Parallel(skeleton.resolved_plane(plane)),
         };
+        let normal = Constructor { frame: &self.frame, arena }.splitter(&definition);
         let normal = arena.keep3(mark, normal);
         cache.normals.insert(c, normal);
         normal
@@ -203,7 +204,8 @@ impl Directions {
         let direction = match self.definitions[d.0 as usize] {
             DirectionDef::Point(point) => {
                 let mark = cache.arena.mark();
-                let (x, _) = skeleton.exact_point(&self.frame, &mut cache.arena, skeleton.point(point));
+                let point = skeleton.resolved_point(skeleton.point(point));
+                let (x, _) = Constructor { frame: &self.frame, arena: &mut cache.arena }.point(&point);
                 cache.arena.keep3(mark, x)
             }
             DirectionDef::Crossing { circles, reversed } => {
@@ -224,7 +226,8 @@ impl Directions {
         }
         let normal = self.exact_normal(skeleton, c, cache);
         let mark = cache.arena.mark();
-        let direction = given_vector(&mut cache.arena, d);
+        let mut exact = Constructor { frame: &self.frame, arena: &mut cache.arena };
+        let direction = exact.direction(&exact::Direction::Given(d));
         let sign = cache.arena.dot_sign(normal, direction);
         cache.arena.release(mark);
         sign
