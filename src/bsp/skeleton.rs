@@ -343,9 +343,7 @@ impl Skeleton {
                 let mut exact = Constructor { frame: &self.frame, arena };
                 let (x, w) = exact.point(&self.resolved_point(def));
                 let (normal, height) = exact.plane(&self.resolved_plane(plane));
-                let along = arena.dot(normal, x);
-                let offset = arena.mul(height, w);
-                let sign = arena.add(along, offset).sign();
+                let sign = arena.height_sign(normal, height, x, w);
                 arena.release(mark);
                 sign
             }

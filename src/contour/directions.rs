@@ -2,7 +2,7 @@
 //! contour tree: on which side of a great circle a direction lies.
 
 use crate::bsp::{LineDef, LineId, PointId, Skeleton, Tree};
-use crate::exact::{self, Approx3, Arena, Constructor, Frame, Num3, Sign, U};
+use crate::exact::{self, Approx3, Arena, Constructor, Frame, Num3, Sign};
 use crate::scene::{PlaneId, SupportingPlane, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -69,7 +69,7 @@ pub(crate) struct ExactCache {
 
 impl ExactCache {
     fn rounded(&self, exact: Num3) -> Approx3 {
-        Approx3::known(self.arena.direction(exact), 4.0 * U)
+        Approx3::rounded(&self.arena, exact)
     }
 }
 

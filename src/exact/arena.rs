@@ -45,12 +45,19 @@ pub(crate) type Num3 = [Num; 3];
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Arena {
     limbs: Vec<u64>,
+    /// How many signs were too wide for fixed widths.
+    arbitrary: u64,
 }
 
 impl Arena {
     /// The place to come back to with [`Arena::release`].
     pub(crate) fn mark(&self) -> usize {
         self.limbs.len()
+    }
+
+    /// How many signs were decided with integers of arbitrary width so far.
+    pub(crate) fn arbitrary_signs(&self) -> u64 {
+        self.arbitrary
     }
 
     /// Forgets every number made since the mark was taken.
@@ -203,8 +210,10 @@ impl Arena {
             3 => fixed!(3, 7),
             4 => fixed!(4, 9),
             5..=6 => fixed!(6, 13),
-            7..=fixed::MOST_LIMBS => fixed!(8, 17),
+            7..=8 => fixed!(8, 17),
+            9..=fixed::MOST_LIMBS => fixed!(12, 25),
             _ => {
+                self.arbitrary += 1;
                 let mark = self.mark();
                 let sign = self.dot(a, b).sign();
                 self.release(mark);
@@ -226,8 +235,10 @@ impl Arena {
             3 => fixed!(3, 6, 10),
             4 => fixed!(4, 8, 13),
             5..=6 => fixed!(6, 12, 19),
-            7..=fixed::MOST_LIMBS => fixed!(8, 16, 25),
+            7..=8 => fixed!(8, 16, 25),
+            9..=fixed::MOST_LIMBS => fixed!(12, 24, 37),
             _ => {
+                self.arbitrary += 1;
                 let mark = self.mark();
                 let cross = self.cross(b, c);
                 let sign = self.dot(a, cross).sign();
@@ -235,6 +246,28 @@ impl Arena {
                 sign
             }
         }
+    }
+
+    /// The sign of `normal . x + height w`; leaves nothing behind.
+    pub(crate) fn height_sign(&mut self, normal: Num3, height: Num, x: Num3, w: Num) -> Sign {
+        self.arbitrary += 1;
+        let mark = self.mark();
+        let along = self.dot(normal, x);
+        let offset = self.mul(height, w);
+        let sign = self.add(along, offset).sign();
+        self.release(mark);
+        sign
+    }
+
+    /// Positive if two vectors other than 0 point the same way, negative if they point opposite ways,
+    /// zero if they are not parallel; leaves nothing behind.
+    pub(crate) fn parallel(&mut self, a: Num3, b: Num3) -> Sign {
+        self.arbitrary += 1;
+        let mark = self.mark();
+        let parallel = self.cross(a, b).into_iter().all(|x| x.sign().is_zero());
+        let sign = if parallel { self.dot(a, b).sign() } else { Sign::Zero };
+        self.release(mark);
+        sign
     }
 
     /// How many limbs hold the components with a sign bit.

@@ -11,7 +11,7 @@ use super::Sign;
 pub(crate) type Fixed3<const W: usize> = [[u64; W]; 3];
 
 /// Widths from 1 to this are dispatched to here.
-pub(crate) const MOST_LIMBS: usize = 8;
+pub(crate) const MOST_LIMBS: usize = 12;
 
 /// The sign of `a . (b x c)`. `W2` is `2 W`, `W3` is `3 W + 1`.
 #[inline]

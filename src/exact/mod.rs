@@ -11,12 +11,16 @@ mod construct;
 mod definition;
 mod fixed;
 mod frame;
+mod kernel;
 mod orient;
 mod sign;
+mod stats;
 
 pub use definition::{Direction, Plane, Point, Splitter};
+pub use kernel::{Along, CircleRelation, DirectionId, Kernel, SplitterId};
 pub use orient::orient3d;
 pub use sign::Sign;
+pub use stats::PredicateStats;
 
 pub(crate) use approx::{Approx3, U};
 pub(crate) use approximate::{ApproxPlane, ApproxPoint};
