@@ -36,6 +36,13 @@ enum CircleDef {
     Parallel(PlaneId),
 }
 
+/// A direction by itself: its definition and its approximation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LooseDirection {
+    definition: DirectionDef,
+    approx: Approx3,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum DirectionDef {
     /// From the eye to a point.
@@ -51,8 +58,7 @@ pub(crate) struct Directions {
     frame: Frame,
     circles: Vec<CircleDef>,
     normals: Vec<Approx3>,
-    definitions: Vec<DirectionDef>,
-    approx: Vec<Approx3>,
+    directions: Vec<LooseDirection>,
 }
 
 /// Integers that were needed once and may be needed again.
@@ -60,7 +66,7 @@ pub(crate) struct Directions {
 pub(crate) struct ExactCache {
     arena: Arena,
     normals: FxHashMap<CircleId, Num3>,
-    directions: FxHashMap<DirectionId, Num3>,
+    points: FxHashMap<PointId, Num3>,
     /// How often the filter did not decide.
     pub(crate) undecided: u64,
     /// How often identity did not decide either.
@@ -80,8 +86,7 @@ impl Directions {
             frame: Frame::new(skeleton.bits, eye),
             circles: Vec::new(),
             normals: Vec::new(),
-            definitions: Vec::new(),
-            approx: Vec::new(),
+            directions: Vec::new(),
         }
     }
 
@@ -111,24 +116,44 @@ impl Directions {
         self.push_circle(skeleton, CircleDef::Parallel(plane), skeleton.approx_normal(plane), cache)
     }
 
-    fn push_direction(
-        &mut self,
+    /// A direction whose approximation is good, or made good with integers.
+    fn loose(
+        &self,
         skeleton: &Skeleton,
-        def: DirectionDef,
+        definition: DirectionDef,
         approx: Approx3,
         cache: &mut ExactCache,
-    ) -> DirectionId {
-        let id = DirectionId(self.definitions.len() as u32);
-        self.definitions.push(def);
-        let refined = approx.is_poor().then(|| self.exact_direction(skeleton, id, cache));
-        self.approx.push(refined.map_or(approx, |exact| cache.rounded(exact)));
-        id
+    ) -> LooseDirection {
+        if !approx.is_poor() {
+            return LooseDirection { definition, approx };
+        }
+        let approx = match definition {
+            DirectionDef::Point(point) => {
+                let exact = self.exact_point(skeleton, point, cache);
+                cache.rounded(exact)
+            }
+            DirectionDef::Crossing { circles, reversed } => {
+                let [m, n] = circles.map(|c| self.exact_normal(skeleton, c, cache));
+                let mark = cache.arena.mark();
+                let exact = if reversed { cache.arena.cross(n, m) } else { cache.arena.cross(m, n) };
+                let approx = cache.rounded(exact);
+                cache.arena.release(mark);
+                approx
+            }
+        };
+        LooseDirection { definition, approx }
     }
 
     pub(crate) fn push_point(&mut self, skeleton: &Skeleton, point: PointId, cache: &mut ExactCache) -> DirectionId {
         let approx = skeleton.approx_point(point);
         let approx = Approx3::direction(self.eye, approx.position, approx.err.max_element());
-        self.push_direction(skeleton, DirectionDef::Point(point), approx, cache)
+        let direction = self.loose(skeleton, DirectionDef::Point(point), approx, cache);
+        self.push(direction)
+    }
+
+    fn push(&mut self, direction: LooseDirection) -> DirectionId {
+        self.directions.push(direction);
+        DirectionId(self.directions.len() as u32 - 1)
     }
 
     /// The direction `n_1 x n_2`, or the opposite one.
@@ -139,25 +164,47 @@ impl Directions {
         reversed: bool,
         cache: &mut ExactCache,
     ) -> DirectionId {
+        let direction = self.crossing(skeleton, circles, reversed, cache);
+        self.push(direction)
+    }
+
+    /// The same without keeping it.
+    pub(crate) fn crossing(
+        &self,
+        skeleton: &Skeleton,
+        circles: [CircleId; 2],
+        reversed: bool,
+        cache: &mut ExactCache,
+    ) -> LooseDirection {
         let [m, n] = circles.map(|c| &self.normals[c.0 as usize]);
         let approx = if reversed { n.cross(*m) } else { m.cross(*n) };
-        self.push_direction(skeleton, DirectionDef::Crossing { circles, reversed }, approx, cache)
+        self.loose(skeleton, DirectionDef::Crossing { circles, reversed }, approx, cache)
+    }
+
+    pub(crate) fn direction(&self, d: DirectionId) -> LooseDirection {
+        self.directions[d.0 as usize]
     }
 
     /// On which side of the great circle the direction lies, exactly.
     #[inline]
     pub(crate) fn side(&self, skeleton: &Skeleton, d: DirectionId, c: CircleId, cache: &mut ExactCache) -> Sign {
-        match self.approx[d.0 as usize].dot_sign(&self.normals[c.0 as usize]) {
+        self.side_of(skeleton, &self.directions[d.0 as usize], c, cache)
+    }
+
+    /// The same for a direction that was not kept.
+    #[inline]
+    pub(crate) fn side_of(&self, skeleton: &Skeleton, d: &LooseDirection, c: CircleId, cache: &mut ExactCache) -> Sign {
+        match d.approx.dot_sign(&self.normals[c.0 as usize]) {
             Some(sign) => sign,
-            None => self.undecided_side(skeleton, d, c, cache),
+            None => self.undecided_side(skeleton, d.definition, c, cache),
         }
     }
 
     #[cold]
     #[inline(never)]
-    fn undecided_side(&self, skeleton: &Skeleton, d: DirectionId, c: CircleId, cache: &mut ExactCache) -> Sign {
+    fn undecided_side(&self, skeleton: &Skeleton, d: DirectionDef, c: CircleId, cache: &mut ExactCache) -> Sign {
         cache.undecided += 1;
-        let known_zero = match (self.definitions[d.0 as usize], self.circles[c.0 as usize]) {
+        let known_zero = match (d, self.circles[c.0 as usize]) {
             (DirectionDef::Crossing { circles, .. }, _) => circles.contains(&c),
             (DirectionDef::Point(point), CircleDef::Line(line)) => skeleton.known_on_line(point, line),
             _ => false,
@@ -167,14 +214,14 @@ impl Directions {
         }
         cache.integer += 1;
         let normal = self.exact_normal(skeleton, c, cache);
-        match self.definitions[d.0 as usize] {
+        match d {
             DirectionDef::Crossing { circles, reversed } => {
                 let [m, n] = circles.map(|circle| self.exact_normal(skeleton, circle, cache));
                 let [m, n] = if reversed { [n, m] } else { [m, n] };
                 cache.arena.det_sign(normal, m, n)
             }
-            DirectionDef::Point(_) => {
-                let direction = self.exact_direction(skeleton, d, cache);
+            DirectionDef::Point(point) => {
+                let direction = self.exact_point(skeleton, point, cache);
                 cache.arena.dot_sign(normal, direction)
             }
         }
@@ -197,26 +244,16 @@ impl Directions {
         normal
     }
 
-    fn exact_direction(&self, skeleton: &Skeleton, d: DirectionId, cache: &mut ExactCache) -> Num3 {
-        if let Some(&known) = cache.directions.get(&d) {
+    fn exact_point(&self, skeleton: &Skeleton, point: PointId, cache: &mut ExactCache) -> Num3 {
+        if let Some(&known) = cache.points.get(&point) {
             return known;
         }
-        let direction = match self.definitions[d.0 as usize] {
-            DirectionDef::Point(point) => {
-                let mark = cache.arena.mark();
-                let point = skeleton.resolved_point(skeleton.point(point));
-                let (x, _) = Constructor { frame: &self.frame, arena: &mut cache.arena }.point(&point);
-                cache.arena.keep3(mark, x)
-            }
-            DirectionDef::Crossing { circles, reversed } => {
-                let [m, n] = circles.map(|c| self.exact_normal(skeleton, c, cache));
-                let mark = cache.arena.mark();
-                let x = if reversed { cache.arena.cross(n, m) } else { cache.arena.cross(m, n) };
-                cache.arena.keep3(mark, x)
-            }
-        };
-        cache.directions.insert(d, direction);
-        direction
+        let mark = cache.arena.mark();
+        let point_definition = skeleton.resolved_point(skeleton.point(point));
+        let (x, _) = Constructor { frame: &self.frame, arena: &mut cache.arena }.point(&point_definition);
+        let x = cache.arena.keep3(mark, x);
+        cache.points.insert(point, x);
+        x
     }
 
     /// On which side of the great circle a direction given by three numbers lies, exactly.
@@ -235,7 +272,7 @@ impl Directions {
 
     /// The direction as a unit vector.
     pub(crate) fn unit(&self, d: DirectionId) -> DVec3 {
-        self.approx[d.0 as usize].v.normalize_or_zero()
+        self.directions[d.0 as usize].approx.v.normalize_or_zero()
     }
 
     /// The normal of a great circle in floating point: `n . d > 0` is its positive side.

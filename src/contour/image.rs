@@ -103,17 +103,22 @@ impl ContourImage {
         (0..self.leaves.len() as u32).map(|k| self.cell(CellId(k)))
     }
 
-    /// The arcs along which the contour tree cuts its regions, root first: what `--show-tree` draws.
+    /// The stretches of splitters that separate the cells from each other and from what is outside of
+    /// the domain, by cell: what `--show-tree` draws.
     pub fn tree_arcs(&self) -> Vec<TreeArc> {
         let mut arcs = Vec::new();
         for cell in self.cells() {
-            for (k, side) in cell.arcs().iter().enumerate() {
-                // Either neighbour has the arc; it is enough to draw it from its positive side, and
-                // from the other one where that is outside of the domain.
-                let next = cell.arcs()[(k + 1) % cell.arcs().len()];
-                let splitter = self.tree.directions.splitter(&self.bsp.tree, side.along.circle());
-                if side.along.inside().is_positive() || matches!(splitter, Splitter::Parallel(_)) {
+            let sides = cell.arcs();
+            let mut ends_domain = vec![false; sides.len()];
+            for neighbour in cell.neighbours() {
+                ends_domain[neighbour.side] |= neighbour.cell.is_none();
+            }
+            for (k, side) in sides.iter().enumerate() {
+                // Both neighbours have the stretch: it is taken from the positive side.
+                if side.along.inside().is_positive() || ends_domain[k] {
+                    let next = sides[(k + 1) % sides.len()];
                     let ends = [side.from, next.from].map(|d| self.tree.directions.unit(d));
+                    let splitter = self.tree.directions.splitter(&self.bsp.tree, side.along.circle());
                     arcs.push(TreeArc { ends, splitter });
                 }
             }

@@ -1,7 +1,8 @@
 //! Which cells lie across the sides of a cell.
 
-use super::directions::{DirectionId, Directions, ExactCache};
+use super::directions::{Directions, ExactCache, LooseDirection};
 use super::image::{Cell, CellId};
+use super::polygon::HalfSphere;
 use super::tree::{Link, TreeNode};
 use crate::bsp::Skeleton;
 use crate::exact::Sign;
@@ -21,14 +22,13 @@ impl Cell<'_> {
     pub fn neighbours(self) -> Vec<Neighbour> {
         let image = self.image();
         let skeleton = &image.bsp().tree.skeleton;
-        let mut across = Across { skeleton, directions: image.tree.directions.clone(), cache: ExactCache::default() };
+        let directions = &image.tree.directions;
+        let mut across = Across { skeleton, directions, cache: ExactCache::default() };
         let arcs = self.arcs();
+        let corners: Vec<LooseDirection> = arcs.iter().map(|arc| directions.direction(arc.from)).collect();
         let mut found = Vec::new();
         for (side, arc) in arcs.iter().enumerate() {
-            let next = arcs[(side + 1) % arcs.len()];
-            // A corner that is not on the side's great circle lies on the cell's side of it.
-            let corners: Vec<DirectionId> = arcs.iter().map(|arc| arc.from).collect();
-            let mut stack = vec![(image.root(), [arc.from, next.from])];
+            let mut stack = vec![(image.root(), [corners[side], corners[(side + 1) % arcs.len()]])];
             while let Some((link, ends)) = stack.pop() {
                 match link {
                     Link::Leaf(leaf) => {
@@ -49,7 +49,7 @@ impl Cell<'_> {
 
 struct Across<'a> {
     skeleton: &'a Skeleton,
-    directions: Directions,
+    directions: &'a Directions,
     cache: ExactCache,
 }
 
@@ -57,17 +57,18 @@ impl Across<'_> {
     fn descend(
         &mut self,
         node: &TreeNode,
-        along: super::polygon::HalfSphere,
-        [from, to]: [DirectionId; 2],
-        corners: &[DirectionId],
-        stack: &mut Vec<(Link, [DirectionId; 2])>,
+        along: HalfSphere,
+        [from, to]: [LooseDirection; 2],
+        corners: &[LooseDirection],
+        stack: &mut Vec<(Link, [LooseDirection; 2])>,
     ) {
-        let mut side = |d| self.directions.side(self.skeleton, d, node.circle, &mut self.cache);
-        let (here, there) = (side(from), side(to));
+        let mut side = |d| self.directions.side_of(self.skeleton, d, node.circle, &mut self.cache);
+        let (here, there) = (side(&from), side(&to));
         match (here, there) {
             (Sign::Zero, Sign::Zero) => {
-                // The side runs along the node's circle: on across it.
-                let own = corners.iter().map(|&c| side(c)).find(|s| !s.is_zero());
+                // The side runs along the node's circle: on across it. A corner off the circle tells
+                // on which side of it the cell is.
+                let own = corners.iter().map(side).find(|s| !s.is_zero());
                 match own {
                     Some(Sign::Positive) => stack.push((node.negative, [from, to])),
                     Some(_) => stack.push((node.positive, [from, to])),
@@ -79,7 +80,7 @@ impl Across<'_> {
             _ => {
                 let reversed = along.inside() * here == Sign::Negative;
                 let circles = [along.circle(), node.circle];
-                let middle = self.directions.push_crossing(self.skeleton, circles, reversed, &mut self.cache);
+                let middle = self.directions.crossing(self.skeleton, circles, reversed, &mut self.cache);
                 let (first, second) =
                     if here.is_positive() { (node.positive, node.negative) } else { (node.negative, node.positive) };
                 stack.push((first, [from, middle]));

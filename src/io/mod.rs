@@ -4,14 +4,22 @@
 //! about it, all faults at once. They keep to memory in proportion to the size of the files.
 
 mod atomic;
+#[cfg(feature = "cli")]
+mod contour_json;
 mod error;
 mod lines;
 pub mod mtl;
 mod number;
 pub mod obj;
+mod svg;
+mod visible_obj;
 
 pub use atomic::atomic_write;
+#[cfg(feature = "cli")]
+pub use contour_json::{CONTOUR_SCHEMA, ContourSummary, DomainRow, ObjectRow, PolygonRow, Share, write_contour_json};
 pub use error::{Fault, Faults, ReadError};
+pub use svg::{SvgOptions, write_svg};
+pub use visible_obj::{fragment_groups, visible_groups};
 
 use crate::scene::Scene;
 use std::path::Path;

@@ -10,6 +10,7 @@ mod facets;
 mod flat;
 mod material;
 mod problem;
+mod report;
 mod triangulate;
 mod validate;
 mod weld;
@@ -17,6 +18,7 @@ mod weld;
 pub use builder::{FaceSpec, SceneBuilder};
 pub use material::Material;
 pub use problem::{SceneError, SceneProblem};
+pub use report::{MeshReport, TJunction};
 
 use glam::DVec3;
 use std::ops::Range;

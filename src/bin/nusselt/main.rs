@@ -1,2 +1,52 @@
 //! The command line program `nusselt`.
-fn main() {}
+
+mod args;
+mod contour;
+mod failure;
+mod info;
+mod input;
+mod output;
+mod scene;
+mod summary;
+
+use clap::Parser;
+use failure::Failure;
+use std::process::ExitCode;
+
+/// Exact from-point visibility: what is seen from a point, and the form factors that follow from it.
+#[derive(Parser)]
+#[command(name = "nusselt", version, max_term_width = 100, after_help = "Every command has a --help with an example.")]
+struct Program {
+    #[command(subcommand)]
+    command: Command,
+    #[command(flatten)]
+    common: args::Common,
+}
+
+#[derive(clap::Subcommand)]
+enum Command {
+    Info(info::Info),
+    Contour(contour::Contour),
+    Scene(scene::Scene),
+}
+
+fn main() -> ExitCode {
+    let outcome = match Program::try_parse() {
+        Ok(program) => match program.command {
+            Command::Info(command) => command.run(&program.common),
+            Command::Contour(command) => command.run(&program.common),
+            Command::Scene(command) => command.run(&program.common),
+        },
+        Err(error) => failure::of_clap(&error),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure::report(&failure);
+            match failure {
+                Failure::Usage(_) => ExitCode::from(2),
+                Failure::Work(_) => ExitCode::from(1),
+            }
+        }
+    }
+}

@@ -1,0 +1,79 @@
+//! Arguments that several commands take.
+
+use glam::DVec3;
+use nusselt::scene::{PolygonId, Side};
+use std::num::NonZeroUsize;
+
+/// What all commands take.
+#[derive(clap::Args)]
+pub(crate) struct Common {
+    /// Use this many threads; the results are the same for any number [default: all cores]
+    #[arg(long, global = true, value_name = "N", value_parser = parse_threads, allow_hyphen_values = true)]
+    pub(crate) threads: Option<NonZeroUsize>,
+    /// Print neither warnings nor a summary in words
+    #[arg(long, global = true)]
+    pub(crate) quiet: bool,
+    /// Print the summary as JSON
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+}
+
+impl Common {
+    /// Prints a warning to stderr.
+    pub(crate) fn warn(&self, warning: &str) {
+        use std::io::Write;
+        if !self.quiet {
+            // If stderr is closed there is no one left to warn.
+            let _ = writeln!(std::io::stderr(), "nusselt: warning: {warning}");
+        }
+    }
+}
+
+/// How the 3D BSP is built.
+#[derive(clap::Args)]
+pub(crate) struct Order {
+    /// Leave polygons uncut that poke less than this through a splitting plane, in scene units; 0 is exact
+    #[arg(long, value_name = "E", default_value = "0", value_parser = parse_epsilon, allow_hyphen_values = true)]
+    pub(crate) epsilon: f64,
+}
+
+fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
+    text.parse().map_err(|_| "it takes a whole number of at least 1".to_owned())
+}
+
+fn parse_number(text: &str) -> Result<f64, String> {
+    let number: f64 = text.trim().parse().map_err(|_| format!("{:?} is not a number", text.trim()))?;
+    if number.is_finite() { Ok(number) } else { Err(format!("{} is not finite", text.trim())) }
+}
+
+fn parse_epsilon(text: &str) -> Result<f64, String> {
+    let epsilon = parse_number(text)?;
+    if epsilon < 0.0 { Err("it takes a distance of at least 0".to_owned()) } else { Ok(epsilon) }
+}
+
+/// A point `X,Y,Z`.
+pub(crate) fn parse_point(text: &str) -> Result<DVec3, String> {
+    let parts: Vec<&str> = text.split(',').collect();
+    let [x, y, z] = parts[..] else {
+        return Err(format!("it takes three numbers X,Y,Z without blanks between them, not {}", parts.len()));
+    };
+    Ok(DVec3::new(parse_number(x)?, parse_number(y)?, parse_number(z)?))
+}
+
+/// A vector `X,Y,Z` that is not zero.
+pub(crate) fn parse_direction(text: &str) -> Result<DVec3, String> {
+    let vector = parse_point(text)?;
+    if vector == DVec3::ZERO { Err("the zero vector has no direction".to_owned()) } else { Ok(vector) }
+}
+
+/// A side of a polygon: `K` or `K:back`.
+pub(crate) fn parse_surface(text: &str) -> Result<(PolygonId, Side), String> {
+    let (number, side) = match text.split_once(':') {
+        None => (text, Side::Front),
+        Some((number, "front")) => (number, Side::Front),
+        Some((number, "back")) => (number, Side::Back),
+        Some((_, other)) => return Err(format!("the side is front or back, not {other:?}")),
+    };
+    let number = number.parse().map_err(|_| format!("{number:?} is not the number of a polygon, counted from 0"))?;
+    Ok((PolygonId(number), side))
+}

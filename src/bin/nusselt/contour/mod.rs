@@ -1,0 +1,168 @@
+//! `nusselt contour`: the contour image from one point.
+
+mod place;
+mod report;
+
+use crate::args::{Common, Order, parse_direction, parse_point, parse_surface};
+use crate::failure::Failure;
+use crate::input::{build, load};
+use crate::output::{is_same_file, print, print_json, write_file, write_obj};
+use crate::summary::Timing;
+use glam::DVec3;
+use nusselt::contour::{ContourImage, Projection, Projector, ViewOptions};
+use nusselt::io::{ContourSummary, SvgOptions, visible_groups, write_contour_json, write_svg};
+use nusselt::scene::{PolygonId, Side};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+const EXAMPLE: &str = "\
+Examples: the form factors of all objects from a point on the floor, and a picture of them
+  nusselt contour room.obj --eye 2,1.5,0 --normal 0,0,1 -o view.json -o view.svg
+
+The whole sphere around a point in the air, as a panorama with the contour tree
+  nusselt contour room.obj --eye 2,1.5,1.2 --sphere -o tree.svg --show-tree
+
+From the back of polygon 17
+  nusselt contour room.obj --eye 2,1.5,0 --on 17:back --json";
+
+/// Compute the contour image: exactly what is seen from a point, and how much of it
+#[derive(clap::Args)]
+#[command(after_help = EXAMPLE)]
+#[command(group(clap::ArgGroup::new("domain").required(true).args(["normal", "sphere", "on"])))]
+pub(crate) struct Contour {
+    /// The scene
+    scene: PathBuf,
+    /// Where to stand
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]
+    eye: DVec3,
+    /// See the hemisphere about this normal, of any length; a point that lies on a polygon with such a normal is
+    /// taken to be on it
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true)]
+    normal: Option<DVec3>,
+    /// See the whole sphere
+    #[arg(long)]
+    sphere: bool,
+    /// Stand on polygon K, where it is nearest to --eye, on its front or back, and see what is above
+    #[arg(long, value_name = "K[:back]", value_parser = parse_surface, allow_hyphen_values = true)]
+    on: Option<(PolygonId, Side)>,
+    /// Take --eye as it is, even if it lies on a polygon
+    #[arg(long, conflicts_with_all = ["sphere", "on"])]
+    free: bool,
+    /// Write to this file; the ending decides: .json, .svg, or .obj (visible parts in space). May be repeated
+    #[arg(short, long, value_name = "FILE", value_parser = Output::parse)]
+    output: Vec<Output>,
+    /// How to draw .svg [default: nusselt; equirectangular for the sphere]
+    #[arg(long, value_name = "NAME", value_parser = parse_projection)]
+    projection: Option<Projection>,
+    /// Draw the contour tree and the quadtree over .svg
+    #[arg(long)]
+    show_tree: bool,
+    /// Levels of the quadtree at the top of the contour tree, 0 to 8 [default: by the size of the scene]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=8))]
+    quadtree_depth: Option<u32>,
+    #[command(flatten)]
+    order: Order,
+}
+
+/// The formats that are written, by the ending of the file's name.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Json,
+    Svg,
+    Obj,
+}
+
+/// A file to write.
+#[derive(Clone)]
+struct Output {
+    path: PathBuf,
+    format: Format,
+}
+
+impl Output {
+    fn parse(text: &str) -> Result<Self, String> {
+        let path = PathBuf::from(text);
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+        let format = match ending.as_deref() {
+            Some("json") => Format::Json,
+            Some("svg") => Format::Svg,
+            Some("obj") => Format::Obj,
+            _ => return Err("its ending is none of .json, .svg, .obj".to_owned()),
+        };
+        Ok(Self { path, format })
+    }
+}
+
+fn parse_projection(text: &str) -> Result<Projection, String> {
+    let named = Projection::ALL.into_iter().find(|projection| projection.name() == text);
+    named.ok_or_else(|| format!("there are {}", Projection::ALL.map(Projection::name).join(", ")))
+}
+
+impl Contour {
+    pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
+        let projection = self.check()?;
+        let (scene, load_s) = load(&self.scene, common)?;
+        let (viewpoint, domain) = self.stand(&scene)?;
+        let (bsp, bsp_s) = build(&scene, &self.order)?;
+        let start = Instant::now();
+        let options = ViewOptions { quadtree_depth: self.quadtree_depth };
+        let image = bsp.view_with(&viewpoint, &domain, &options).map_err(|e| Failure::Work(e.to_string()))?;
+        let view_ms = start.elapsed().as_secs_f64() * 1e3;
+        let timing = Timing::new(load_s, bsp_s, &[view_ms]);
+        let summary = ContourSummary::new(&image);
+        for output in &self.output {
+            self.write(output, projection, &image, &summary)?;
+        }
+        if common.json {
+            return print_json(&report::Printed::new(&summary, timing, &image));
+        }
+        if common.quiet {
+            return Ok(());
+        }
+        let mut lines = report::in_words(&image, &summary, timing);
+        for output in &self.output {
+            lines.add("wrote", output.path.display());
+        }
+        print(&lines.0)
+    }
+
+    /// What can be told to be wrong before any work is done; the projection to draw in.
+    fn check(&self) -> Result<Projection, Failure> {
+        let usage = |message: String| Err(Failure::Usage(message));
+        for (k, output) in self.output.iter().enumerate() {
+            let path = output.path.display();
+            if is_same_file(&output.path, &self.scene) {
+                return usage(format!("-o {path} would overwrite the scene; name another file"));
+            }
+            if self.output[..k].iter().any(|other| is_same_file(&other.path, &output.path)) {
+                return usage(format!("-o {path} is given twice; name each file once"));
+            }
+        }
+        let default = if self.sphere { Projection::Equirectangular } else { Projection::Nusselt };
+        let projection = self.projection.unwrap_or(default);
+        if self.sphere && projection == Projection::Nusselt {
+            return usage(format!("--projection: {}", nusselt::contour::ProjectionError::NotAHemisphere));
+        }
+        Ok(projection)
+    }
+
+    fn write(
+        &self,
+        output: &Output,
+        projection: Projection,
+        image: &ContourImage,
+        summary: &ContourSummary<'_>,
+    ) -> Result<(), Failure> {
+        let path: &Path = &output.path;
+        match output.format {
+            Format::Json => write_file(path, |out| write_contour_json(image, summary, out)),
+            Format::Svg => {
+                let projector =
+                    Projector::of_image(image, projection).map_err(|error| Failure::Usage(error.to_string()))?;
+                let options = SvgOptions { show_tree: self.show_tree, ..SvgOptions::default() };
+                write_file(path, |out| write_svg(image, &projector, &options, out))
+            }
+            Format::Obj => write_obj(path, &visible_groups(image), image.bsp().scene()),
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Files and standard output.
+
+use crate::failure::Failure;
+use nusselt::io::{atomic_write, mtl, obj};
+use nusselt::scene::Scene;
+use std::fs::File;
+use std::io::{self, BufWriter, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+/// Prints to stdout. A reader that has gone away (`| head`) is not a failure.
+pub(crate) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::Work(format!("cannot write to standard output: {error}")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Prints a value as JSON.
+pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string_pretty(value).map_err(|e| Failure::Work(format!("cannot write JSON: {e}")))?;
+    print(&(text + "\n"))
+}
+
+/// Writes a file, whole or not at all.
+pub(crate) fn write_file(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), Failure> {
+    let why = |error: io::Error| {
+        let advice = match error.kind() {
+            ErrorKind::NotFound => "; make its directory first",
+            ErrorKind::PermissionDenied => "; choose a directory that you may write to",
+            _ => "",
+        };
+        Failure::Work(format!("cannot write {}: {error}{advice}", path.display()))
+    };
+    atomic_write(path, write).map_err(why)
+}
+
+/// The material library beside an OBJ file, and the name by which the OBJ file refers to it.
+pub(crate) fn library_of(obj: &Path) -> (PathBuf, String) {
+    let path = obj.with_extension("mtl");
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    (path, name)
+}
+
+/// Writes an OBJ file with the materials of a scene beside it.
+pub(crate) fn write_obj(path: &Path, groups: &[obj::Group], scene: &Scene) -> Result<(), Failure> {
+    let (library, name) = library_of(path);
+    // First, so that the OBJ file never refers to what is not there.
+    write_file(&library, |out| mtl::write(out, scene.materials()))?;
+    write_file(path, |out| obj::write(out, groups, Some(&name)))
+}
+
+/// True if both names lead to one file, as far as that can be told before it is written.
+pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
+    let whole = |path: &Path| {
+        path.canonicalize().or_else(|_| {
+            let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            parent.canonicalize().map(|parent| parent.join(path.file_name().unwrap_or_default()))
+        })
+    };
+    match (whole(a), whole(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => a == b,
+    }
+}

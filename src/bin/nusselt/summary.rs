@@ -1,0 +1,45 @@
+//! What summaries have in common.
+
+use serde::Serialize;
+use std::fmt::{Display, Write};
+
+/// Times around the work itself.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(crate) struct Timing {
+    pub(crate) load_s: f64,
+    pub(crate) bsp_s: f64,
+    pub(crate) views: usize,
+    pub(crate) view_ms_mean: f64,
+    pub(crate) view_ms_max: f64,
+    pub(crate) threads: usize,
+}
+
+impl Timing {
+    /// Of a command that makes these views, one after the other.
+    pub(crate) fn new(load_s: f64, bsp_s: f64, view_ms: &[f64]) -> Self {
+        let mean = view_ms.iter().sum::<f64>() / view_ms.len().max(1) as f64;
+        let max = view_ms.iter().copied().fold(0.0, f64::max);
+        Self { load_s, bsp_s, views: view_ms.len(), view_ms_mean: mean, view_ms_max: max, threads: 1 }
+    }
+}
+
+/// A vector as one would type it.
+pub(crate) fn vector(v: glam::DVec3) -> String {
+    v.to_array().map(number).join(",")
+}
+
+/// The shortest number that reads as the same, with an exponent where it would be long otherwise.
+fn number(x: f64) -> String {
+    if x == 0.0 || (1e-5..1e12).contains(&x.abs()) { format!("{}", x + 0.0) } else { format!("{x:e}") }
+}
+
+/// Lines of a name and what there is to say about it.
+#[derive(Default)]
+pub(crate) struct Lines(pub(crate) String);
+
+impl Lines {
+    pub(crate) fn add(&mut self, name: &str, value: impl Display) {
+        // Writing to a string does not fail.
+        let _ = writeln!(self.0, "{name:<12} {value}");
+    }
+}

@@ -1,0 +1,206 @@
+//! Contour images as JSON: schema `nusselt.contour/1`.
+
+use crate::contour::{ContourImage, Domain};
+use crate::integral::{PolygonSum, Sums};
+use crate::scene::{ObjectId, Side};
+use serde::Serialize;
+use std::io::{self, BufWriter, Write};
+
+/// The schema's name.
+pub const CONTOUR_SCHEMA: &str = "nusselt.contour/1";
+
+/// A solid angle, with the form factor for hemispheres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Share {
+    /// In steradians.
+    pub solid_angle: f64,
+    /// Only for hemispheres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub form_factor: Option<f64>,
+}
+
+/// The directions that were looked at.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum DomainRow {
+    /// All of them.
+    Sphere,
+    /// Those above a horizon.
+    Hemisphere {
+        /// The normal: of unit length, or as it was given.
+        normal: [f64; 3],
+    },
+}
+
+/// A visible polygon.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PolygonRow<'a> {
+    /// Its number.
+    pub polygon: u32,
+    /// The name of its object.
+    pub object: &'a str,
+    /// The name of its material.
+    pub material: &'a str,
+    /// How much of it is seen.
+    #[serde(flatten)]
+    pub share: Share,
+    /// The part of it where its front is seen: of the form factor, or of the solid angle if there is none.
+    pub front: f64,
+    /// Likewise for its back.
+    pub back: f64,
+}
+
+/// A visible object.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ObjectRow<'a> {
+    /// Its name.
+    pub object: &'a str,
+    /// How much of it is seen.
+    #[serde(flatten)]
+    pub share: Share,
+}
+
+/// Everything about a contour image but its cells.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ContourSummary<'a> {
+    /// [`CONTOUR_SCHEMA`].
+    pub schema: &'static str,
+    /// The viewpoint.
+    pub eye: [f64; 3],
+    /// The polygon that it is on.
+    pub on: Option<u32>,
+    /// The epsilon of the 3D BSP.
+    pub epsilon: f64,
+    /// The directions looked at.
+    pub domain: DomainRow,
+    /// The visible polygons, ascending.
+    pub polygons: Vec<PolygonRow<'a>>,
+    /// The visible objects, in the order of the file.
+    pub objects: Vec<ObjectRow<'a>>,
+    /// Where nothing is seen.
+    pub background: Share,
+    /// All of it.
+    pub total: Share,
+}
+
+impl<'a> ContourSummary<'a> {
+    /// Sums up an image. Costs one pass over its cells.
+    pub fn new(image: &'a ContourImage) -> Self {
+        let scene = image.bsp().scene();
+        let angles = image.solid_angles();
+        let factors = image.form_factors();
+        let share_of =
+            |sum: fn(&Sums) -> f64| Share { solid_angle: sum(&angles), form_factor: factors.as_ref().map(sum) };
+        let mut objects = vec![None::<Share>; scene.objects().len()];
+        let mut polygons = Vec::with_capacity(angles.polygons.len());
+        for (k, angle) in angles.polygons.iter().enumerate() {
+            let polygon = scene.polygon(angle.polygon);
+            let factor = factors.as_ref().map(|sums| sums.polygons[k]);
+            let share = Share { solid_angle: angle.both(), form_factor: factor.map(PolygonSum::both) };
+            let sides = factor.unwrap_or(*angle);
+            polygons.push(PolygonRow {
+                polygon: angle.polygon.0,
+                object: polygon.object_name(),
+                material: &polygon.material().name,
+                share,
+                front: sides.front,
+                back: sides.back,
+            });
+            objects[polygon.object().index()].get_or_insert_default().add(share);
+        }
+        let objects = (0..).map(ObjectId).zip(objects).filter_map(|(id, share)| {
+            let object = scene.objects()[id.index()].as_str();
+            share.map(|share| ObjectRow { object, share })
+        });
+        Self {
+            schema: CONTOUR_SCHEMA,
+            eye: image.viewpoint().eye().to_array(),
+            on: image.viewpoint().surface().map(|(polygon, _)| polygon.0),
+            epsilon: image.bsp().epsilon(),
+            domain: domain_row(image),
+            objects: objects.collect(),
+            polygons,
+            background: share_of(|sums| sums.background),
+            total: share_of(Sums::total),
+        }
+    }
+}
+
+impl Share {
+    fn add(&mut self, other: Self) {
+        self.solid_angle += other.solid_angle;
+        if let Some(factor) = other.form_factor {
+            *self.form_factor.get_or_insert_default() += factor;
+        }
+    }
+}
+
+fn domain_row(image: &ContourImage) -> DomainRow {
+    let normal = match image.domain() {
+        Domain::Sphere => None,
+        Domain::Hemisphere(normal) => Some(*normal),
+        Domain::Above => image.normal(),
+    };
+    // Adding 0 turns -0 into 0.
+    normal.map_or(DomainRow::Sphere, |normal| DomainRow::Hemisphere { normal: (normal + 0.0).to_array() })
+}
+
+#[derive(Serialize)]
+struct CellRow<'a> {
+    polygon: Option<u32>,
+    side: Option<&'static str>,
+    boundary: &'a [[f64; 3]],
+    #[serde(flatten)]
+    share: Share,
+}
+
+/// Writes the image, one cell a line. Numbers are the shortest decimals that read back as the same f64.
+/// Cells are written as they are made up: memory does not grow with their number.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_contour_json(image: &ContourImage, summary: &ContourSummary<'_>, out: impl Write) -> io::Result<()> {
+    let mut out = BufWriter::new(out);
+    write!(out, "{{")?;
+    field(&mut out, "schema", &summary.schema)?;
+    field(&mut out, "eye", &summary.eye)?;
+    field(&mut out, "on", &summary.on)?;
+    field(&mut out, "epsilon", &summary.epsilon)?;
+    field(&mut out, "domain", &summary.domain)?;
+    let mut boundary = Vec::new();
+    rows(&mut out, "cells", image.cells(), |out, cell| {
+        boundary.clear();
+        boundary.extend(cell.boundary().map(|d| d.to_array()));
+        let side = cell.side().map(|side| if side == Side::Front { "front" } else { "back" });
+        let share = Share { solid_angle: cell.solid_angle(), form_factor: cell.form_factor() };
+        let row = CellRow { polygon: cell.polygon().map(|id| id.0), side, boundary: &boundary, share };
+        Ok(serde_json::to_writer(out, &row)?)
+    })?;
+    rows(&mut out, "polygons", &summary.polygons, |out, row| Ok(serde_json::to_writer(out, row)?))?;
+    rows(&mut out, "objects", &summary.objects, |out, row| Ok(serde_json::to_writer(out, row)?))?;
+    field(&mut out, "background", &summary.background)?;
+    write!(out, "\"total\": ")?;
+    serde_json::to_writer(&mut out, &summary.total)?;
+    writeln!(out, "}}")?;
+    out.flush()
+}
+
+fn field(out: &mut impl Write, name: &str, value: &impl Serialize) -> io::Result<()> {
+    write!(out, "\"{name}\": ")?;
+    serde_json::to_writer(&mut *out, value)?;
+    writeln!(out, ",")
+}
+
+fn rows<W: Write, T>(
+    out: &mut W,
+    name: &str,
+    items: impl IntoIterator<Item = T>,
+    mut write_row: impl FnMut(&mut W, T) -> io::Result<()>,
+) -> io::Result<()> {
+    write!(out, "\"{name}\": [")?;
+    for (k, item) in items.into_iter().enumerate() {
+        out.write_all(if k == 0 { b"\n" } else { b",\n" })?;
+        write_row(out, item)?;
+    }
+    writeln!(out, "\n],")
+}
