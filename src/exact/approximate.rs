@@ -73,13 +73,11 @@ impl ApproxPlane {
 
     /// The height of a point in scene units, rounded; for choices that need not be exact.
     pub(crate) fn rounded_height(&self, p: DVec3) -> f64 {
-        match self.axis {
-            Some(axis) => p[axis] - self.anchor[axis],
-            None => {
-                let length = self.normal.v.length();
-                if length > 0.0 { self.normal.v.dot(p - self.anchor) / length } else { 0.0 }
-            }
+        if let Some(axis) = self.axis {
+            return p[axis] - self.anchor[axis];
         }
+        let length = self.normal.v.length();
+        if length > 0.0 { self.normal.v.dot(p - self.anchor) / length } else { 0.0 }
     }
 
     /// The crease `h_2 N_1 - h_1 N_2` of two planes seen from the eye.

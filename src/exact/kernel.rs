@@ -11,7 +11,8 @@ use super::arena::{Arena, Num3};
 use super::construct::Constructor;
 use super::definition::{Direction, Plane, Point, Splitter};
 use super::frame::{BitRange, Frame};
-use super::{PredicateStats, Sign, orient3d};
+use super::orient::{orient3d_expansions, orient3d_filter};
+use super::{PredicateStats, Sign};
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -311,18 +312,15 @@ impl Kernel {
             return Along::Same;
         }
         let (n, p, q) = (self.approx_splitter(circle), self.approx_direction(from), self.approx_direction(other));
-        let ahead = match p.cross(q).dot_sign(&n) {
-            Some(sign) => {
-                self.stats.filter += 1;
-                sign
-            }
-            None => {
-                let range = range_of_splitter(range_of_direction(range_of_direction(self.range, from), other), circle);
-                self.decide(range, |exact| {
-                    let (n, p, q) = (exact.splitter(circle), exact.direction(from), exact.direction(other));
-                    exact.arena.det_sign(n, p, q)
-                })
-            }
+        let ahead = if let Some(sign) = p.cross(q).dot_sign(&n) {
+            self.stats.filter += 1;
+            sign
+        } else {
+            let range = range_of_splitter(range_of_direction(range_of_direction(self.range, from), other), circle);
+            self.decide(range, |exact| {
+                let (n, p, q) = (exact.splitter(circle), exact.direction(from), exact.direction(other));
+                exact.arena.det_sign(n, p, q)
+            })
         };
         match ahead {
             Sign::Positive => Along::Ahead,
@@ -339,15 +337,23 @@ impl Kernel {
             self.stats.identity += 1;
             return Sign::Zero;
         }
-        if let (Point::Given(p), Plane::Points([a, b, c])) = (point, plane) {
-            // Counted as decided by the filter, though orient3d has stages of its own.
+        let known = match (point, plane) {
+            (Point::Given(p), Plane::Axis { axis, value }) => compare(p[*axis], *value),
+            (Point::Given(p), Plane::Points([a, b, c])) => orient3d_filter(*a, *b, *c, *p),
+            _ => {
+                let height = ApproxPlane::new(plane).height(&ApproxPoint::of(point));
+                (height.mid.abs() > height.rad).then(|| Sign::of(height.mid))
+            }
+        };
+        if let Some(sign) = known {
             self.stats.filter += 1;
-            return orient3d(*a, *b, *c, *p);
+            return sign;
         }
-        let height = ApproxPlane::new(plane).height(&ApproxPoint::of(point));
-        if height.mid.abs() > height.rad {
-            self.stats.filter += 1;
-            return Sign::of(height.mid);
+        if let (Point::Given(p), Plane::Points([a, b, c])) = (point, plane)
+            && let Some(sign) = orient3d_expansions(*a, *b, *c, *p)
+        {
+            self.stats.fixed += 1;
+            return sign;
         }
         let range = range_of_point_definition(range_of_plane(self.range, plane), point);
         self.decide(range, |exact| {
@@ -441,6 +447,11 @@ impl ApproxPoint {
             Point::Planes(_) => Self { position: DVec3::ZERO, err: DVec3::INFINITY },
         }
     }
+}
+
+/// The sign of a difference, which comparing finds without rounding.
+fn compare(a: f64, b: f64) -> Option<Sign> {
+    if a.is_finite() && b.is_finite() { a.partial_cmp(&b).map(Sign::from) } else { None }
 }
 
 /// True if a direction is known to lie on a splitter by what the two are defined from.

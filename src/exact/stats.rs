@@ -9,7 +9,7 @@ pub struct PredicateStats {
     pub filter: u64,
     /// Left undecided by the filter, then known by identity: a direction on a splitter that defines it.
     pub identity: u64,
-    /// Decided by integers of fixed width.
+    /// Decided by integers of fixed width, or by expansions.
     pub fixed: u64,
     /// Decided by integers of arbitrary width.
     pub arbitrary: u64,

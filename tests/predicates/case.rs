@@ -22,7 +22,7 @@ pub(crate) struct Random(pub(crate) u64);
 
 impl Source for Random {
     fn below(&mut self, n: u64) -> u64 {
-        (u128::from(self.bits()) * u128::from(n) >> 64) as u64
+        ((u128::from(self.bits()) * u128::from(n)) >> 64) as u64
     }
 
     fn bits(&mut self) -> u64 {
@@ -177,7 +177,7 @@ impl Case {
             planes: self.planes.iter().map(|p| map_plane(*p, f)).collect(),
             points: self.points.iter().map(|p| map_point(*p, f)).collect(),
             splitters: self.splitters.iter().map(|s| map_splitter(*s, f)).collect(),
-            directions: self.directions.iter().map(|d| map_direction(*d, f)).collect(),
+            directions: self.directions.iter().map(|d| map_direction(d, f)).collect(),
             corners: self.corners.map(|p| map_position(p, f)),
         }
     }
@@ -211,8 +211,8 @@ fn map_splitter(splitter: Splitter, f: &mut impl FnMut(f64) -> f64) -> Splitter 
     }
 }
 
-fn map_direction(direction: Direction, f: &mut impl FnMut(f64) -> f64) -> Direction {
-    match direction {
+fn map_direction(direction: &Direction, f: &mut impl FnMut(f64) -> f64) -> Direction {
+    match *direction {
         Direction::Given(d) => Direction::Given(d),
         Direction::Point(point) => Direction::Point(map_point(point, f)),
         Direction::Crossing(splitters) => Direction::Crossing(splitters.map(|s| map_splitter(s, f))),
