@@ -56,8 +56,8 @@ fn row(kind: Kind, polygons: usize, depth: Option<u32>) -> Result<(), Box<dyn Er
             stats.inserted,
             stats.skipped_subtrees,
             stats.visited_nodes as usize,
-            stats.undecided as usize,
-            stats.decided_by_integers as usize,
+            stats.predicates.undecided() as usize,
+            (stats.predicates.fixed + stats.predicates.arbitrary) as usize,
         ];
         counts.iter_mut().zip(row).for_each(|(sum, n)| *sum += n);
     }

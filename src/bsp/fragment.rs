@@ -1,7 +1,8 @@
 //! Fragments: pieces of polygons, as the splitting planes left them.
 
-use super::skeleton::{ApproxPoint, LineId, PointId, Skeleton};
+use super::skeleton::{LineId, PointId, Skeleton};
 use super::{FragmentId, Tree};
+use crate::exact::ApproxPoint;
 use crate::scene::{PieceId, PolygonId};
 use glam::DVec3;
 

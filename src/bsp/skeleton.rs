@@ -5,7 +5,9 @@
 //! are known by identity.
 
 use super::collinear::Collinear;
-use crate::exact::{Approx3, Arena, Ball, BitRange, Frame, Num, Num3, Sign, U, orient3d};
+use crate::exact::{
+    Approx3, ApproxPlane, ApproxPoint, Arena, BitRange, Constructor, Frame, Plane, Point, Sign, Splitter, U, orient3d,
+};
 use crate::scene::{Axis, PlaneId, Scene, SupportingPlane, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -36,20 +38,6 @@ pub(crate) enum LineDef {
     Edge([VertexId; 2]),
     /// Where two planes meet, in the order of their numbers.
     Crease([PlaneId; 2]),
-}
-
-/// A position with a bound on the error of each coordinate; 0 where a coordinate is exact.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ApproxPoint {
-    pub(crate) position: DVec3,
-    pub(crate) err: DVec3,
-}
-
-/// A plane in floating point: `normal . (p - anchor)` is the height of `p` times a positive number.
-#[derive(Clone, Copy, Debug)]
-struct ApproxPlane {
-    normal: Approx3,
-    anchor: DVec3,
 }
 
 const NO_LINE: u32 = u32::MAX;
@@ -98,11 +86,7 @@ impl Skeleton {
             crease_ids: FxHashMap::default(),
             constructed: Vec::new(),
             constructed_ids: FxHashMap::default(),
-            approx_points: scene
-                .vertices()
-                .iter()
-                .map(|&position| ApproxPoint { position, err: DVec3::ZERO })
-                .collect(),
+            approx_points: scene.vertices().iter().map(|&position| ApproxPoint::exact(position)).collect(),
             incident: Vec::new(),
             frame,
         };
@@ -115,18 +99,10 @@ impl Skeleton {
     fn push_plane(&mut self, plane: SupportingPlane) -> PlaneId {
         let id = PlaneId(self.planes.len() as u32);
         self.planes.push(plane);
-        self.approx_planes.push(match plane {
-            SupportingPlane::Axis { axis, value } => {
-                self.axis_planes.insert((axis, value.to_bits()), id);
-                let mut anchor = DVec3::ZERO;
-                anchor[axis as usize] = value;
-                ApproxPlane { normal: Approx3::given(DVec3::AXES[axis as usize]), anchor }
-            }
-            SupportingPlane::Points([a, b, c]) => {
-                let [a, b, c] = [a, b, c].map(|v| self.vertices[v.index()]);
-                ApproxPlane { normal: Approx3::edge_normal(a, b, c), anchor: a }
-            }
-        });
+        if let SupportingPlane::Axis { axis, value } = plane {
+            self.axis_planes.insert((axis, value.to_bits()), id);
+        }
+        self.approx_planes.push(ApproxPlane::new(&self.resolved_plane(id)));
         id
     }
 
@@ -139,6 +115,14 @@ impl Skeleton {
 
     pub(crate) fn plane(&self, id: PlaneId) -> SupportingPlane {
         self.planes[id.index()]
+    }
+
+    /// The plane by its coordinates.
+    pub(crate) fn resolved_plane(&self, id: PlaneId) -> Plane {
+        match self.plane(id) {
+            SupportingPlane::Axis { axis, value } => Plane::Axis { axis: axis as usize, value },
+            SupportingPlane::Points(points) => Plane::Points(points.map(|v| self.vertex(v))),
+        }
     }
 
     pub(crate) fn vertex(&self, id: VertexId) -> DVec3 {
@@ -184,6 +168,25 @@ impl Skeleton {
         match (id.0 as usize).checked_sub(self.vertices.len()) {
             None => PointDef::Vertex(VertexId(id.0)),
             Some(k) => self.constructed[k],
+        }
+    }
+
+    /// The point by its coordinates.
+    pub(crate) fn resolved_point(&self, def: PointDef) -> Point {
+        match def {
+            PointDef::Vertex(v) => Point::Given(self.vertex(v)),
+            PointDef::EdgePlane(ends, plane) => {
+                Point::EdgePlane(ends.map(|v| self.vertex(v)), self.resolved_plane(plane))
+            }
+            PointDef::Planes(planes) => Point::Planes(planes.map(|p| self.resolved_plane(p))),
+        }
+    }
+
+    /// The great circle of a line by its coordinates.
+    pub(crate) fn resolved_line(&self, line: LineId) -> Splitter {
+        match self.line(line) {
+            LineDef::Edge(ends) => Splitter::Edge(ends.map(|v| self.vertex(v))),
+            LineDef::Crease(planes) => Splitter::Crease(planes.map(|p| self.resolved_plane(p))),
         }
     }
 
@@ -250,11 +253,12 @@ impl Skeleton {
             PointDef::EdgePlane([a, b], _) => [a, b].map(|v| self.approx_points[v.index()]),
             _ => [from, to].map(|p| self.approx_point(p)),
         };
-        let mut approx = interpolate(from, to, self.height(plane, from), self.height(plane, to));
+        let cut = &self.approx_planes[plane.index()];
+        let mut approx = ApproxPoint::between(from, to, cut.height(&from), cut.height(&to));
         let poor = 1e-13 * (from.position.abs() + to.position.abs());
         if !approx.err.cmple(poor).all() {
             let mark = arena.mark();
-            let (x, w) = self.exact_point(&self.frame, arena, def);
+            let (x, w) = Constructor { frame: &self.frame, arena }.point(&self.resolved_point(def));
             let (position, err) = self.frame.position(arena, x, w);
             approx = ApproxPoint { position, err };
             arena.release(mark);
@@ -276,26 +280,9 @@ impl Skeleton {
         id
     }
 
-    /// The height of a point over a plane, times a positive number that is the same for all points.
-    fn height(&self, plane: PlaneId, point: ApproxPoint) -> Ball {
-        let coordinate = |k: usize| Ball::new(point.position[k], point.err[k]);
-        if let SupportingPlane::Axis { axis, value } = self.plane(plane) {
-            return coordinate(axis as usize) - Ball::exact(value);
-        }
-        let ApproxPlane { normal, anchor } = &self.approx_planes[plane.index()];
-        let term = |k: usize| (coordinate(k) - Ball::exact(anchor[k])) * Ball::new(normal.v[k], normal.slack / 8.0);
-        term(0) + term(1) + term(2)
-    }
-
     /// The height of a point over a plane in scene units, rounded; for choices that need not be exact.
     pub(crate) fn rounded_height(&self, plane: PlaneId, point: PointId) -> f64 {
-        let p = self.approx_point(point).position;
-        if let SupportingPlane::Axis { axis, value } = self.plane(plane) {
-            return p[axis as usize] - value;
-        }
-        let ApproxPlane { normal, anchor } = &self.approx_planes[plane.index()];
-        let length = normal.v.length();
-        if length > 0.0 { normal.v.dot(p - *anchor) / length } else { 0.0 }
+        self.approx_planes[plane.index()].rounded_height(self.approx_point(point).position)
     }
 
     /// The exact side of a plane that a point is on.
@@ -316,7 +303,7 @@ impl Skeleton {
             if let PointDef::Vertex(vertex) = def {
                 return self.vertex_side(plane, vertex);
             }
-            let height = self.height(plane, approx);
+            let height = self.approx_planes[plane.index()].height(&approx);
             if height.mid.abs() > height.rad {
                 return Sign::of(height.mid);
             }
@@ -353,101 +340,21 @@ impl Skeleton {
             }
             _ => {
                 let mark = arena.mark();
-                let (x, w) = self.exact_point(&self.frame, arena, def);
-                let (normal, height) = self.exact_plane(&self.frame, arena, plane);
-                let along = arena.dot(normal, x);
-                let offset = arena.mul(height, w);
-                let sign = arena.add(along, offset).sign();
+                let mut exact = Constructor { frame: &self.frame, arena };
+                let (x, w) = exact.point(&self.resolved_point(def));
+                let (normal, height) = exact.plane(&self.resolved_plane(plane));
+                let sign = arena.height_sign(normal, height, x, w);
                 arena.release(mark);
                 sign
             }
         }
     }
 
-    /// A plane relative to the frame's origin: `normal . x + height * w` has the sign of the side
-    /// that the point `x / w` (relative to the origin) is on, for `w > 0`.
-    pub(crate) fn exact_plane(&self, frame: &Frame, arena: &mut Arena, plane: PlaneId) -> (Num3, Num) {
-        match self.plane(plane) {
-            SupportingPlane::Axis { axis, value } => {
-                let mut normal = [Num::ZERO; 3];
-                normal[axis as usize] = arena.integer(1);
-                (normal, frame.relative_coordinate(arena, axis as usize, value).negated())
-            }
-            SupportingPlane::Points(points) => {
-                let [a, b, c] = points.map(|v| frame.relative(arena, self.vertex(v)));
-                let ab = arena.sub3(b, a);
-                let ac = arena.sub3(c, a);
-                let normal = arena.cross(ab, ac);
-                (normal, arena.dot(normal, a).negated())
-            }
-        }
-    }
-
-    /// A point relative to the frame's origin, in homogeneous coordinates `x / w` with `w > 0`.
-    pub(crate) fn exact_point(&self, frame: &Frame, arena: &mut Arena, def: PointDef) -> (Num3, Num) {
-        match def {
-            PointDef::Vertex(v) => (frame.relative(arena, self.vertex(v)), arena.integer(1)),
-            PointDef::EdgePlane(ends, plane) => {
-                let [a, b] = ends.map(|v| frame.relative(arena, self.vertex(v)));
-                let (normal, height) = self.exact_plane(frame, arena, plane);
-                let [at_a, at_b] = [a, b].map(|p| {
-                    let along = arena.dot(normal, p);
-                    arena.add(along, height)
-                });
-                debug_assert_eq!(at_a.sign(), -at_b.sign(), "the plane separates the ends");
-                // a |h_b| + b |h_a| over |h_a| + |h_b|; the heights' signs differ.
-                let sign = at_a.sign();
-                let (to_a, to_b) = (at_b.negated().times_sign(sign), at_a.times_sign(sign));
-                let (from_a, from_b) = (arena.scale3(to_a, a), arena.scale3(to_b, b));
-                (arena.add3(from_a, from_b), arena.add(to_a, to_b))
-            }
-            PointDef::Planes(planes) => {
-                // Cramer's rule for N_i . x = -h_i.
-                let [(n1, h1), (n2, h2), (n3, h3)] = planes.map(|p| self.exact_plane(frame, arena, p));
-                let (n23, n31, n12) = (arena.cross(n2, n3), arena.cross(n3, n1), arena.cross(n1, n2));
-                let det = arena.dot(n1, n23);
-                let terms = [(h1, n23), (h2, n31), (h3, n12)].map(|(h, n)| arena.scale3(h, n));
-                let sum = arena.add3(terms[0], terms[1]);
-                let sum = arena.add3(sum, terms[2]);
-                let sign = det.sign();
-                (sum.map(|x| x.times_sign(-sign)), det.times_sign(sign))
-            }
-        }
-    }
-
-    /// The normal of the plane through a line and the frame's origin: for an edge `(a - o) x (b - o)`,
-    /// for a crease `h_2 N_1 - h_1 N_2`.
-    pub(crate) fn exact_line_normal(&self, frame: &Frame, arena: &mut Arena, line: LineId) -> Num3 {
-        match self.line(line) {
-            LineDef::Edge(ends) => {
-                let [a, b] = ends.map(|v| frame.relative(arena, self.vertex(v)));
-                arena.cross(a, b)
-            }
-            LineDef::Crease(planes) => {
-                let [(n1, h1), (n2, h2)] = planes.map(|p| self.exact_plane(frame, arena, p));
-                let (first, second) = (arena.scale3(h2, n1), arena.scale3(h1, n2));
-                arena.sub3(first, second)
-            }
-        }
-    }
-
-    /// The same normal in floating point.
+    /// The normal of a line's great circle in floating point.
     pub(crate) fn approx_line_normal(&self, eye: DVec3, line: LineId) -> Approx3 {
         match self.line(line) {
             LineDef::Edge([a, b]) => Approx3::edge_normal(eye, self.vertex(a), self.vertex(b)),
-            LineDef::Crease([p, q]) => {
-                let at = ApproxPoint { position: eye, err: DVec3::ZERO };
-                let [(n1, h1), (n2, h2)] = [p, q].map(|plane| {
-                    let normal = &self.approx_planes[plane.index()].normal;
-                    (normal, self.height(plane, at))
-                });
-                let component =
-                    |k: usize| h2 * Ball::new(n1.v[k], n1.slack / 8.0) - h1 * Ball::new(n2.v[k], n2.slack / 8.0);
-                let m = [component(0), component(1), component(2)];
-                let err = m[0].rad.max(m[1].rad).max(m[2].rad);
-                let err = if m.iter().any(|b| b.rad.is_nan()) { f64::NAN } else { err };
-                Approx3::known(DVec3::new(m[0].mid, m[1].mid, m[2].mid), err)
-            }
+            LineDef::Crease(planes) => ApproxPlane::crease(planes.map(|p| &self.approx_planes[p.index()]), eye),
         }
     }
 
@@ -460,23 +367,6 @@ impl Skeleton {
     pub(crate) fn anchor(&self, plane: PlaneId) -> DVec3 {
         self.approx_planes[plane.index()].anchor
     }
-}
-
-/// The point at height 0 between two points whose heights have opposite signs.
-fn interpolate(from: ApproxPoint, to: ApproxPoint, at_from: Ball, at_to: Ball) -> ApproxPoint {
-    let t = at_from.div(at_from - at_to);
-    let mut result = from;
-    for k in 0..3 {
-        let (a, b) = (Ball::new(from.position[k], from.err[k]), Ball::new(to.position[k], to.err[k]));
-        // Exact where both ends are, and the same.
-        if a.rad == 0.0 && b.rad == 0.0 && compare(a.mid, b.mid).is_zero() {
-            continue;
-        }
-        let x = a + t * (b - a);
-        result.position[k] = x.mid;
-        result.err[k] = if x.rad.is_nan() { f64::INFINITY } else { x.rad };
-    }
-    result
 }
 
 fn compare(x: f64, y: f64) -> Sign {

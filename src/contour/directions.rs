@@ -2,7 +2,7 @@
 //! contour tree: on which side of a great circle a direction lies.
 
 use crate::bsp::{LineDef, LineId, PointId, Skeleton, Tree};
-use crate::exact::{Approx3, Arena, Frame, Num3, Sign, U, given_vector};
+use crate::exact::{self, Approx3, Arena, Constructor, Frame, Num3, PredicateStats, Sign};
 use crate::scene::{PlaneId, SupportingPlane, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -58,7 +58,7 @@ pub(crate) struct Directions {
     frame: Frame,
     circles: Vec<CircleDef>,
     normals: Vec<Approx3>,
-    known: Vec<LooseDirection>,
+    kept: Vec<LooseDirection>,
 }
 
 /// Integers that were needed once and may be needed again.
@@ -67,21 +67,44 @@ pub(crate) struct ExactCache {
     arena: Arena,
     normals: FxHashMap<CircleId, Num3>,
     points: FxHashMap<PointId, Num3>,
-    /// How often the filter did not decide.
-    pub(crate) undecided: u64,
-    /// How often identity did not decide either.
-    pub(crate) integer: u64,
+    /// What decided the sides asked for. Calls are counted where many are made at once, so `filter` is
+    /// known only at the end: see [`ExactCache::predicates`].
+    undecided: PredicateStats,
+    calls: u64,
 }
 
 impl ExactCache {
+    /// Counts calls of [`Directions::side`] and its like that are about to be made.
+    #[inline]
+    pub(crate) fn count_calls(&mut self, calls: usize) {
+        self.calls += calls as u64;
+    }
+
+    /// What all calls took.
+    pub(crate) fn predicates(&self) -> PredicateStats {
+        PredicateStats { filter: self.calls - self.undecided.undecided(), ..self.undecided }
+    }
+
+    /// Decides with integers and counts which kind.
+    fn decide(&mut self, decide: impl FnOnce(&mut Arena) -> Sign) -> Sign {
+        let arbitrary = self.arena.arbitrary_signs();
+        let sign = decide(&mut self.arena);
+        if self.arena.arbitrary_signs() == arbitrary {
+            self.undecided.fixed += 1;
+        } else {
+            self.undecided.arbitrary += 1;
+        }
+        sign
+    }
+
     fn rounded(&self, exact: Num3) -> Approx3 {
-        Approx3::known(self.arena.direction(exact), 4.0 * U)
+        Approx3::rounded(&self.arena, exact)
     }
 }
 
 impl Directions {
     pub(crate) fn new(skeleton: &Skeleton, eye: DVec3) -> Self {
-        Self { eye, frame: Frame::new(skeleton.bits, eye), circles: Vec::new(), normals: Vec::new(), known: Vec::new() }
+        Self { eye, frame: Frame::new(skeleton.bits, eye), circles: Vec::new(), normals: Vec::new(), kept: Vec::new() }
     }
 
     fn push_circle(
@@ -146,8 +169,8 @@ impl Directions {
     }
 
     fn push(&mut self, direction: LooseDirection) -> DirectionId {
-        self.known.push(direction);
-        DirectionId(self.known.len() as u32 - 1)
+        self.kept.push(direction);
+        DirectionId(self.kept.len() as u32 - 1)
     }
 
     /// The direction `n_1 x n_2`, or the opposite one.
@@ -176,13 +199,13 @@ impl Directions {
     }
 
     pub(crate) fn direction(&self, d: DirectionId) -> LooseDirection {
-        self.known[d.0 as usize]
+        self.kept[d.0 as usize]
     }
 
     /// On which side of the great circle the direction lies, exactly.
     #[inline]
     pub(crate) fn side(&self, skeleton: &Skeleton, d: DirectionId, c: CircleId, cache: &mut ExactCache) -> Sign {
-        self.side_of(skeleton, &self.known[d.0 as usize], c, cache)
+        self.side_of(skeleton, &self.kept[d.0 as usize], c, cache)
     }
 
     /// The same for a direction that was not kept.
@@ -197,26 +220,25 @@ impl Directions {
     #[cold]
     #[inline(never)]
     fn undecided_side(&self, skeleton: &Skeleton, d: DirectionDef, c: CircleId, cache: &mut ExactCache) -> Sign {
-        cache.undecided += 1;
         let known_zero = match (d, self.circles[c.0 as usize]) {
             (DirectionDef::Crossing { circles, .. }, _) => circles.contains(&c),
             (DirectionDef::Point(point), CircleDef::Line(line)) => skeleton.known_on_line(point, line),
             _ => false,
         };
         if known_zero {
+            cache.undecided.identity += 1;
             return Sign::Zero;
         }
-        cache.integer += 1;
         let normal = self.exact_normal(skeleton, c, cache);
         match d {
             DirectionDef::Crossing { circles, reversed } => {
                 let [m, n] = circles.map(|circle| self.exact_normal(skeleton, circle, cache));
                 let [m, n] = if reversed { [n, m] } else { [m, n] };
-                cache.arena.det_sign(normal, m, n)
+                cache.decide(|arena| arena.det_sign(normal, m, n))
             }
             DirectionDef::Point(point) => {
                 let direction = self.exact_point(skeleton, point, cache);
-                cache.arena.dot_sign(normal, direction)
+                cache.decide(|arena| arena.dot_sign(normal, direction))
             }
         }
     }
@@ -227,11 +249,12 @@ impl Directions {
         }
         let arena = &mut cache.arena;
         let mark = arena.mark();
-        let normal = match self.circles[c.0 as usize] {
-            CircleDef::Line(line) => skeleton.exact_line_normal(&self.frame, arena, line),
-            CircleDef::Given(normal) => given_vector(arena, normal),
-            CircleDef::Parallel(plane) => skeleton.exact_plane(&self.frame, arena, plane).0,
+        let definition = match self.circles[c.0 as usize] {
+            CircleDef::Line(line) => skeleton.resolved_line(line),
+            CircleDef::Given(normal) => exact::Splitter::Given(normal),
+            CircleDef::Parallel(plane) => exact::Splitter::Parallel(skeleton.resolved_plane(plane)),
         };
+        let normal = Constructor { frame: &self.frame, arena }.splitter(&definition);
         let normal = arena.keep3(mark, normal);
         cache.normals.insert(c, normal);
         normal
@@ -242,7 +265,8 @@ impl Directions {
             return known;
         }
         let mark = cache.arena.mark();
-        let (x, _) = skeleton.exact_point(&self.frame, &mut cache.arena, skeleton.point(point));
+        let point_definition = skeleton.resolved_point(skeleton.point(point));
+        let (x, _) = Constructor { frame: &self.frame, arena: &mut cache.arena }.point(&point_definition);
         let x = cache.arena.keep3(mark, x);
         cache.points.insert(point, x);
         x
@@ -255,7 +279,8 @@ impl Directions {
         }
         let normal = self.exact_normal(skeleton, c, cache);
         let mark = cache.arena.mark();
-        let direction = given_vector(&mut cache.arena, d);
+        let mut exact = Constructor { frame: &self.frame, arena: &mut cache.arena };
+        let direction = exact.direction(&exact::Direction::Given(d));
         let sign = cache.arena.dot_sign(normal, direction);
         cache.arena.release(mark);
         sign
@@ -263,7 +288,7 @@ impl Directions {
 
     /// The direction as a unit vector.
     pub(crate) fn unit(&self, d: DirectionId) -> DVec3 {
-        self.known[d.0 as usize].approx.v.normalize_or_zero()
+        self.kept[d.0 as usize].approx.v.normalize_or_zero()
     }
 
     /// The normal of a great circle in floating point: `n . d > 0` is its positive side.

@@ -56,6 +56,7 @@ impl Knife {
         circle: CircleId,
     ) -> Sides {
         self.signs.clear();
+        self.cache.count_calls(polygon.len());
         let mut sides = Sides { positive: false, negative: false };
         for arc in polygon {
             let sign = directions.side(skeleton, arc.from, circle, &mut self.cache);

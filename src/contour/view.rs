@@ -8,7 +8,7 @@ use super::subdivision::subdivide;
 use super::tree::{ContourTree, Workspace};
 use super::viewpoint::Viewpoint;
 use crate::bsp::{FragmentId, LineDef, LineId, PointId, SceneBsp, Step, Tree};
-use crate::exact::Sign;
+use crate::exact::{PredicateStats, Sign};
 use crate::scene::Side;
 use glam::DVec3;
 
@@ -65,10 +65,8 @@ pub struct ViewStats {
     pub skipped_subtrees: usize,
     /// Nodes of the contour tree that fragments went through.
     pub visited_nodes: u64,
-    /// Sides of great circles that the f64 filter left undecided.
-    pub undecided: u64,
-    /// Those among them that integers had to decide.
-    pub decided_by_integers: u64,
+    /// Sides of great circles that were asked for, and what decided them.
+    pub predicates: PredicateStats,
 }
 
 impl SceneBsp {
@@ -120,8 +118,7 @@ impl SceneBsp {
         builder.walk(options.max_cells)?;
         let ViewBuilder { contour, work, mut stats, .. } = builder;
         stats.visited_nodes = work.visited;
-        stats.undecided = work.knife.cache.undecided;
-        stats.decided_by_integers = work.knife.cache.integer;
+        stats.predicates = work.knife.cache.predicates();
         Ok(ContourImage::new(self.clone(), *viewpoint, *domain, contour, stats))
     }
 }

@@ -82,6 +82,14 @@ impl Approx3 {
         Self::normalised(self.v.cross(other.v), 4.5 * err + 20.0 * U)
     }
 
+    /// True if the two vectors are certainly not parallel.
+    ///
+    /// Each component of the cross product is off by at most the bound of [`Approx3::cross`].
+    pub(crate) fn not_parallel(&self, other: &Self) -> bool {
+        let bound = 4.5 * (self.slack + other.slack) / 8.0 + 20.0 * U;
+        self.v.cross(other.v).abs().max_element() > bound
+    }
+
     /// True if the bound on the error is so large that it pays to compute the vector from integers.
     pub(crate) fn is_poor(&self) -> bool {
         self.error_bound() > 1e-13

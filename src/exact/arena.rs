@@ -45,12 +45,19 @@ pub(crate) type Num3 = [Num; 3];
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Arena {
     limbs: Vec<u64>,
+    /// How many signs were too wide for fixed widths.
+    arbitrary: u64,
 }
 
 impl Arena {
     /// The place to come back to with [`Arena::release`].
     pub(crate) fn mark(&self) -> usize {
         self.limbs.len()
+    }
+
+    /// How many signs were decided with integers of arbitrary width so far.
+    pub(crate) fn arbitrary_signs(&self) -> u64 {
+        self.arbitrary
     }
 
     /// Forgets every number made since the mark was taken.
@@ -194,7 +201,7 @@ impl Arena {
     pub(crate) fn dot_sign(&mut self, a: Num3, b: Num3) -> Sign {
         macro_rules! fixed {
             ($w:literal, $sum:literal) => {
-                fixed::dot_sign::<$w, $sum>(&self.fixed(a), &self.fixed(b))
+                fixed::dot_sign::<3, $w, $sum>(&self.fixed(a), &self.fixed(b))
             };
         }
         match self.width(a).max(self.width(b)) {
@@ -203,8 +210,10 @@ impl Arena {
             3 => fixed!(3, 7),
             4 => fixed!(4, 9),
             5..=6 => fixed!(6, 13),
-            7..=fixed::MOST_LIMBS => fixed!(8, 17),
+            7..=8 => fixed!(8, 17),
+            9..=fixed::MOST_LIMBS => fixed!(12, 25),
             _ => {
+                self.arbitrary += 1;
                 let mark = self.mark();
                 let sign = self.dot(a, b).sign();
                 self.release(mark);
@@ -226,8 +235,10 @@ impl Arena {
             3 => fixed!(3, 6, 10),
             4 => fixed!(4, 8, 13),
             5..=6 => fixed!(6, 12, 19),
-            7..=fixed::MOST_LIMBS => fixed!(8, 16, 25),
+            7..=8 => fixed!(8, 16, 25),
+            9..=fixed::MOST_LIMBS => fixed!(12, 24, 37),
             _ => {
+                self.arbitrary += 1;
                 let mark = self.mark();
                 let cross = self.cross(b, c);
                 let sign = self.dot(a, cross).sign();
@@ -237,17 +248,68 @@ impl Arena {
         }
     }
 
+    /// The sign of `normal . x + height w`; leaves nothing behind.
+    pub(crate) fn height_sign(&mut self, normal: Num3, height: Num, x: Num3, w: Num) -> Sign {
+        let (plane, point) = ([normal[0], normal[1], normal[2], height], [x[0], x[1], x[2], w]);
+        macro_rules! fixed {
+            ($w:literal, $sum:literal) => {
+                fixed::dot_sign::<4, $w, $sum>(&self.fixed(plane), &self.fixed(point))
+            };
+        }
+        match self.width(plane).max(self.width(point)) {
+            0..=2 => fixed!(2, 5),
+            3..=4 => fixed!(4, 9),
+            5..=6 => fixed!(6, 13),
+            7..=8 => fixed!(8, 17),
+            9..=fixed::MOST_LIMBS => fixed!(12, 25),
+            _ => {
+                self.arbitrary += 1;
+                let mark = self.mark();
+                let along = self.dot(normal, x);
+                let offset = self.mul(height, w);
+                let sign = self.add(along, offset).sign();
+                self.release(mark);
+                sign
+            }
+        }
+    }
+
+    /// Positive if two vectors other than 0 point the same way, negative if they point opposite ways,
+    /// zero if they are not parallel; leaves nothing behind.
+    pub(crate) fn parallel(&mut self, a: Num3, b: Num3) -> Sign {
+        macro_rules! fixed {
+            ($w:literal, $cross:literal, $sum:literal) => {
+                fixed::parallel::<$w, $cross, $sum>(&self.fixed(a), &self.fixed(b))
+            };
+        }
+        match self.width(a).max(self.width(b)) {
+            0..=2 => fixed!(2, 4, 5),
+            3..=4 => fixed!(4, 8, 9),
+            5..=6 => fixed!(6, 12, 13),
+            7..=8 => fixed!(8, 16, 17),
+            9..=fixed::MOST_LIMBS => fixed!(12, 24, 25),
+            _ => {
+                self.arbitrary += 1;
+                let mark = self.mark();
+                let parallel = self.cross(a, b).into_iter().all(|x| x.sign().is_zero());
+                let sign = if parallel { self.dot(a, b).sign() } else { Sign::Zero };
+                self.release(mark);
+                sign
+            }
+        }
+    }
+
     /// How many limbs hold the components with a sign bit.
-    fn width(&self, v: Num3) -> usize {
+    fn width<const N: usize>(&self, v: [Num; N]) -> usize {
         let limbs = |n: Num| match self.limbs[Self::range(n)].last() {
             None => 0,
             Some(top) => n.len as usize + (top >> 63) as usize,
         };
-        limbs(v[0]).max(limbs(v[1])).max(limbs(v[2]))
+        v.into_iter().map(limbs).fold(0, usize::max)
     }
 
     /// The vector in two's complement; `W` must be at least its width.
-    fn fixed<const W: usize>(&self, v: Num3) -> fixed::Fixed3<W> {
+    fn fixed<const N: usize, const W: usize>(&self, v: [Num; N]) -> [[u64; W]; N] {
         v.map(|n| {
             let mut limbs = [0; W];
             limbs[..n.len as usize].copy_from_slice(&self.limbs[Self::range(n)]);
@@ -352,6 +414,11 @@ mod tests {
                 for w in vectors {
                     let exact = arena.dot(v, w).sign();
                     prop_assert_eq!(arena.dot_sign(v, w), exact);
+                    let (along, offset) = (arena.dot(v, w), arena.mul(v[0], w[2]));
+                    let height = arena.add(along, offset).sign();
+                    prop_assert_eq!(arena.height_sign(v, v[0], w, w[2]), height);
+                    let parallel = arena.cross(v, w).into_iter().all(|x| x.sign().is_zero());
+                    prop_assert_eq!(arena.parallel(v, w), if parallel { exact } else { Sign::Zero });
                     for u in vectors {
                         let cross = arena.cross(v, w);
                         let exact = arena.dot(u, cross).sign();

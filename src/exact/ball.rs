@@ -19,6 +19,9 @@ const ROUND_UP: f64 = 1.0 + 16.0 * U;
 /// Covers the underflow of a product and of its radius (each below 2^-1074).
 const TINY: f64 = f64::MIN_POSITIVE;
 
+/// The least positive number.
+const LEAST: f64 = f64::from_bits(1);
+
 impl Ball {
     pub(crate) fn exact(mid: f64) -> Self {
         Self { mid, rad: 0.0 }
@@ -42,7 +45,8 @@ impl Ball {
         if least.partial_cmp(&TINY) != Some(std::cmp::Ordering::Greater) {
             return Self { mid: 0.0, rad: f64::INFINITY };
         }
-        let rad = (self.rad + divisor.rad * (mid.abs() * ROUND_UP + TINY)) / least;
+        // A product of radii that underflows loses up to 2^-1075, which the division may blow up.
+        let rad = (self.rad + divisor.rad * (mid.abs() * ROUND_UP + TINY) + LEAST) / least;
         Self { mid, rad: (rad + U * mid.abs() + TINY) * ROUND_UP }
     }
 }

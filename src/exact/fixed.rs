@@ -3,7 +3,8 @@
 //! Integers are two's complement, least limb first. A vector of width `W` has components below
 //! `2^(64 W - 1)` in magnitude. Then a component of a cross product of two such vectors is below
 //! `2 * 2^(128 W - 2) = 2^(128 W - 1)` and fits `2 W` limbs; the three terms of its dot product with a
-//! third are below `2^(192 W - 2)` each, and their sum fits `3 W + 1` limbs.
+//! third are below `2^(192 W - 2)` each, and their sum fits `3 W + 1` limbs. Four products of two components
+//! are below `2^(128 W - 2)` each, and their sum fits `2 W + 1`.
 
 use super::Sign;
 
@@ -11,7 +12,7 @@ use super::Sign;
 pub(crate) type Fixed3<const W: usize> = [[u64; W]; 3];
 
 /// Widths from 1 to this are dispatched to here.
-pub(crate) const MOST_LIMBS: usize = 8;
+pub(crate) const MOST_LIMBS: usize = 12;
 
 /// The sign of `a . (b x c)`. `W2` is `2 W`, `W3` is `3 W + 1`.
 #[inline]
@@ -27,13 +28,28 @@ pub(crate) fn det_sign<const W: usize, const W2: usize, const W3: usize>(
     sign(&sum)
 }
 
-/// The sign of `a . b`. `W2` is `2 W + 1`.
+/// The sign of `a . b` for vectors of up to four components. `W2` is `2 W + 1`.
 #[inline]
-pub(crate) fn dot_sign<const W: usize, const W2: usize>(a: &Fixed3<W>, b: &Fixed3<W>) -> Sign {
-    let mut sum = mul::<W, W, W2>(&a[0], &b[0]);
-    sum = add(&sum, &mul::<W, W, W2>(&a[1], &b[1]));
-    sum = add(&sum, &mul::<W, W, W2>(&a[2], &b[2]));
+pub(crate) fn dot_sign<const N: usize, const W: usize, const W2: usize>(a: &[[u64; W]; N], b: &[[u64; W]; N]) -> Sign {
+    const { assert!(N <= 4) };
+    let mut sum = [0; W2];
+    for (x, y) in a.iter().zip(b) {
+        sum = add(&sum, &mul::<W, W, W2>(x, y));
+    }
     sign(&sum)
+}
+
+/// The sign of `a . b` for parallel vectors, zero for others. `W2` is `2 W`, `W3` is `2 W + 1`.
+#[inline]
+pub(crate) fn parallel<const W: usize, const W2: usize, const W3: usize>(a: &Fixed3<W>, b: &Fixed3<W>) -> Sign {
+    let alike = |i: usize, j: usize| mul::<W, W, W2>(&a[i], &b[j]) == mul::<W, W, W2>(&a[j], &b[i]);
+    if alike(1, 2) && alike(2, 0) && alike(0, 1) { dot_sign::<3, W, W3>(a, b) } else { Sign::Zero }
+}
+
+/// An integer in two limbs.
+#[inline]
+pub(crate) fn of_i128(x: i128) -> [u64; 2] {
+    [x as u64, (x >> 64) as u64]
 }
 
 /// The product, sign-extended to `C >= A + B` limbs.

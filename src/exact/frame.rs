@@ -87,6 +87,12 @@ impl Frame {
         if negative { -magnitude } else { magnitude }
     }
 
+    /// `point - origin` in grid units, where every difference is below `2^126`.
+    pub(crate) fn narrow_relative(&self, point: DVec3) -> Option<[i128; 3]> {
+        let origin = self.narrow?;
+        Some(std::array::from_fn(|axis| self.narrow_coordinate(point[axis]) - origin[axis]))
+    }
+
     /// A coordinate in grid units.
     fn coordinate(&self, arena: &mut Arena, x: f64) -> Num {
         let (mantissa, exponent, negative) = decompose(x);

@@ -4,17 +4,26 @@
 //! the sign of the real-number expression for every finite input.
 
 mod approx;
+mod approximate;
 mod arena;
 mod ball;
+mod construct;
+mod definition;
 mod fixed;
 mod frame;
+mod kernel;
 mod orient;
 mod sign;
+mod stats;
 
+pub use definition::{Direction, Plane, Point, Splitter};
+pub use kernel::{Along, CircleRelation, DirectionId, Kernel, SplitterId};
 pub use orient::orient3d;
 pub use sign::Sign;
+pub use stats::PredicateStats;
 
 pub(crate) use approx::{Approx3, U};
-pub(crate) use arena::{Arena, Num, Num3};
-pub(crate) use ball::Ball;
-pub(crate) use frame::{BitRange, Frame, given_vector};
+pub(crate) use approximate::{ApproxPlane, ApproxPoint};
+pub(crate) use arena::{Arena, Num3};
+pub(crate) use construct::Constructor;
+pub(crate) use frame::{BitRange, Frame};

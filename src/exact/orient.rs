@@ -3,6 +3,7 @@
 use super::Sign;
 use super::approx::U;
 use super::arena::Arena;
+use super::fixed;
 use super::frame::{BitRange, Frame};
 use glam::DVec3;
 use robust::Coord3D;
@@ -11,7 +12,8 @@ use robust::Coord3D;
 /// `a`, `b`, `c` run counter-clockwise, zero exactly on their plane. Right for all finite points.
 ///
 /// A filter of three products decides most calls; [`robust::orient3d`] most others; coordinates
-/// outside of the exponents where that is valid, and those only, go to integers.
+/// outside of the exponents where that is valid, and those only, go to integers: of two limbs where all
+/// lie within 125 bits of each other.
 ///
 /// ```
 /// use nusselt::exact::{Sign, orient3d};
@@ -20,21 +22,24 @@ use robust::Coord3D;
 /// assert_eq!(above, Sign::Positive);
 /// ```
 pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Sign {
-    orient3d_filter(a, b, c, d).unwrap_or_else(|| {
-        if [a, b, c, d].into_iter().all(robust_is_valid) {
-            let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
-            // `robust` has the opposite orientation.
-            -Sign::of(robust::orient3d(coord(a), coord(b), coord(c), coord(d)))
-        } else {
-            orient3d_integers(a, b, c, d)
-        }
+    orient3d_filter(a, b, c, d).or_else(|| orient3d_expansions(a, b, c, d)).unwrap_or_else(|| {
+        let frame = Frame::new(BitRange::of([a, b, c, d]), a);
+        orient3d_integers(&frame, &mut Arena::default(), b, c, d)
     })
+}
+
+/// With expansions, where all coordinates have exponents at which they are exact.
+pub(crate) fn orient3d_expansions(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Option<Sign> {
+    let coord = |p: DVec3| Coord3D { x: p.x, y: p.y, z: p.z };
+    // `robust` has the opposite orientation.
+    let exact = || -Sign::of(robust::orient3d(coord(a), coord(b), coord(c), coord(d)));
+    [a, b, c, d].into_iter().all(robust_is_valid).then(exact)
 }
 
 /// Differences are off by `u` relatively; a product of three of them by `(1 + u)^5 - 1`, the
 /// difference of two products and the sum of three such terms by `3 u` more: `8.1 u` of the sum of
 /// the absolute values of all six products in all.
-fn orient3d_filter(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Option<Sign> {
+pub(crate) fn orient3d_filter(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Option<Sign> {
     let (p, q, r) = (b - a, c - a, d - a);
     let (qr_x, rq_x) = (q.y * r.z, q.z * r.y);
     let (qr_y, rq_y) = (q.z * r.x, q.x * r.z);
@@ -66,18 +71,24 @@ fn robust_is_valid(p: DVec3) -> bool {
     p.to_array().into_iter().all(|x| x == 0.0 || (LEAST..MOST).contains(&x.abs()))
 }
 
-fn orient3d_integers(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Sign {
-    let mut arena = Arena::default();
-    let frame = Frame::new(BitRange::of([a, b, c, d]), a);
-    let [p, q, r] = [b, c, d].map(|point| frame.relative(&mut arena, point));
-    let normal = arena.cross(p, q);
-    arena.dot(normal, r).sign()
+/// With integers on a grid whose origin is the first point.
+fn orient3d_integers(frame: &Frame, arena: &mut Arena, b: DVec3, c: DVec3, d: DVec3) -> Sign {
+    if let [Some(p), Some(q), Some(r)] = [b, c, d].map(|point| frame.narrow_relative(point)) {
+        let [p, q, r] = [p, q, r].map(|v| v.map(fixed::of_i128));
+        return fixed::det_sign::<2, 4, 7>(&p, &q, &r);
+    }
+    let [p, q, r] = [b, c, d].map(|point| frame.relative(arena, point));
+    arena.det_sign(p, q, r)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    fn by_integers(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Sign {
+        orient3d_integers(&Frame::new(BitRange::of([a, b, c, d]), a), &mut Arena::default(), b, c, d)
+    }
 
     #[test]
     fn small_and_large_tetrahedra_have_their_sign() {
@@ -107,8 +118,8 @@ mod tests {
         fn all_stages_agree(a in point(), b in point(), c in point(), d in point(), on in 0..4) {
             // Points on an edge of the triangle are exact zeros where halving is exact.
             let d = if on == 0 { (b - c) * 0.5 + c } else { d };
-            prop_assert_eq!(orient3d(a, b, c, d), orient3d_integers(a, b, c, d));
-            prop_assert_eq!(orient3d(b, a, c, d), -orient3d_integers(a, b, c, d));
+            prop_assert_eq!(orient3d(a, b, c, d), by_integers(a, b, c, d));
+            prop_assert_eq!(orient3d(b, a, c, d), -by_integers(a, b, c, d));
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::summary::{Lines, Timing, vector};
 use nusselt::contour::{ContourImage, Domain, ViewStats};
+use nusselt::exact::PredicateStats;
 use nusselt::io::{ContourSummary, Share};
 use nusselt::scene::Side;
 use serde::Serialize;
@@ -13,31 +14,35 @@ pub(super) struct Printed<'a> {
     summary: &'a ContourSummary<'a>,
     cell_count: usize,
     timing: Timing,
+    work: Work,
     predicates: Predicates,
 }
 
-/// The exact decisions that the view took, and the work around them.
+/// What the view took.
 #[derive(Serialize)]
-struct Predicates {
+struct Work {
     inserted_fragments: usize,
     skipped_subtrees: usize,
     visited_nodes: u64,
-    undecided_by_filter: u64,
-    decided_by_integers: u64,
+}
+
+/// The exact decisions that the view took, and what decided them.
+#[derive(Serialize)]
+struct Predicates {
+    calls: u64,
+    filter: u64,
+    identity: u64,
+    fixed: u64,
+    arbitrary: u64,
 }
 
 impl<'a> Printed<'a> {
     pub(super) fn new(summary: &'a ContourSummary<'a>, timing: Timing, image: &ContourImage) -> Self {
-        let ViewStats { inserted, skipped_subtrees, visited_nodes, undecided, decided_by_integers, .. } =
-            *image.stats();
-        let predicates = Predicates {
-            inserted_fragments: inserted,
-            skipped_subtrees,
-            visited_nodes,
-            undecided_by_filter: undecided,
-            decided_by_integers,
-        };
-        Self { summary, cell_count: image.cell_count(), timing, predicates }
+        let ViewStats { inserted, skipped_subtrees, visited_nodes, predicates, .. } = *image.stats();
+        let work = Work { inserted_fragments: inserted, skipped_subtrees, visited_nodes };
+        let PredicateStats { filter, identity, fixed, arbitrary } = predicates;
+        let predicates = Predicates { calls: predicates.calls(), filter, identity, fixed, arbitrary };
+        Self { summary, cell_count: image.cell_count(), timing, work, predicates }
     }
 }
 

@@ -1,0 +1,520 @@
+//! The predicates on definitions: each answers with the sign of a real expression, for any finite
+//! coordinates.
+//!
+//! The stages: what is known by identity of definitions costs nothing; a filter in floating point with
+//! a proven bound decides nearly all the rest; then integers on a common grid, of fixed width where they
+//! fit, of any width where they do not.
+
+use super::approx::{Approx3, U};
+use super::approximate::{ApproxPlane, ApproxPoint};
+use super::arena::{Arena, Num3};
+use super::construct::Constructor;
+use super::definition::{Direction, Plane, Point, Splitter};
+use super::frame::{BitRange, Frame};
+use super::orient::{orient3d_expansions, orient3d_filter};
+use super::{PredicateStats, Sign};
+use glam::DVec3;
+use std::cmp::Ordering;
+
+/// How two great circles, as oriented by their normals, lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum CircleRelation {
+    /// The same circle, the same side positive.
+    Same,
+    /// The same circle, opposite sides positive.
+    Opposite,
+    /// Different circles.
+    Different,
+}
+
+/// Where a direction lies on a great circle, seen from another one on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Along {
+    /// In the same place.
+    Same,
+    /// Less than half a turn counter-clockwise about the circle's normal.
+    Ahead,
+    /// Half a turn away.
+    Opposite,
+    /// Less than half a turn clockwise.
+    Behind,
+}
+
+/// The predicates seen from one eye.
+///
+/// ```
+/// use glam::DVec3;
+/// use nusselt::exact::{Direction, Kernel, Point, Sign, Splitter};
+///
+/// let (a, b) = (DVec3::new(1.0, 0.1, 0.0), DVec3::new(1.0, 0.3, 0.7));
+/// let mut kernel = Kernel::new([a, b], DVec3::ZERO);
+/// let middle = Direction::Point(Point::Given((a + b) / 2.0));
+/// // The middle of the edge is rounded, so that it lies off the edge's plane, or on it: exactly.
+/// assert_ne!(kernel.side(&Direction::Given(DVec3::Z), &Splitter::Edge([a, b])), Sign::Zero);
+/// assert_eq!(kernel.side(&Direction::Point(Point::Given(a)), &Splitter::Edge([a, b])), Sign::Zero);
+/// let _ = kernel.side(&middle, &Splitter::Edge([a, b]));
+/// ```
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    eye: DVec3,
+    range: BitRange,
+    frame: Frame,
+    arena: Arena,
+    splitters: Vec<Known<Splitter>>,
+    directions: Vec<Known<Direction>>,
+    stats: PredicateStats,
+}
+
+/// A splitter that a [`Kernel`] knows; only that kernel knows what it means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SplitterId(u32);
+
+/// A direction that a [`Kernel`] knows; only that kernel knows what it means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct DirectionId(u32);
+
+/// A definition, its approximation and, once it was needed, its integer vector.
+#[derive(Clone, Copy, Debug)]
+struct Known<T> {
+    definition: T,
+    approx: Approx3,
+    exact: Option<Num3>,
+}
+
+impl Kernel {
+    /// Predicates seen from `eye`, on a grid that holds the given points. Other points are as right, but
+    /// slower where integers must decide.
+    ///
+    /// # Panics
+    /// If a coordinate is infinite or not a number; so do all predicates.
+    pub fn new(points: impl IntoIterator<Item = DVec3>, eye: DVec3) -> Self {
+        let range = points.into_iter().fold(range_of_point(BitRange::EMPTY, eye), range_of_point);
+        let frame = Frame::new(range, eye);
+        Self {
+            eye,
+            range,
+            frame,
+            arena: Arena::default(),
+            splitters: Vec::new(),
+            directions: Vec::new(),
+            stats: PredicateStats::default(),
+        }
+    }
+
+    /// The eye.
+    pub fn eye(&self) -> DVec3 {
+        self.eye
+    }
+
+    /// What the calls since the last [`Kernel::reset_stats`] took.
+    pub fn stats(&self) -> PredicateStats {
+        self.stats
+    }
+
+    /// Starts counting anew.
+    pub fn reset_stats(&mut self) {
+        self.stats = PredicateStats::default();
+    }
+
+    /// Takes in a splitter for calls that come often: it is approximated once, and its integers are
+    /// made at most once.
+    pub fn add_splitter(&mut self, definition: &Splitter) -> SplitterId {
+        let approx = self.approx_splitter(definition);
+        self.splitters.push(Known { definition: *definition, approx, exact: None });
+        SplitterId(self.splitters.len() as u32 - 1)
+    }
+
+    /// Takes in a direction for calls that come often.
+    pub fn add_direction(&mut self, definition: &Direction) -> DirectionId {
+        let approx = self.approx_direction(definition);
+        self.directions.push(Known { definition: *definition, approx, exact: None });
+        DirectionId(self.directions.len() as u32 - 1)
+    }
+
+    /// Forgets all splitters and directions taken in; their ids mean nothing any more. The memory is
+    /// kept for the next ones.
+    pub fn clear(&mut self) {
+        self.splitters.clear();
+        self.directions.clear();
+        self.arena.release(0);
+    }
+
+    fn approx_splitter(&mut self, definition: &Splitter) -> Approx3 {
+        let approx = Approx3::splitter(definition, self.eye);
+        if !approx.is_poor() {
+            return approx;
+        }
+        self.with_integers(range_of_splitter(self.range, definition), |exact| {
+            let normal = exact.splitter(definition);
+            Approx3::rounded(exact.arena, normal)
+        })
+    }
+
+    fn approx_direction(&mut self, definition: &Direction) -> Approx3 {
+        let approx = match definition {
+            Direction::Given(d) => Approx3::given(*d),
+            Direction::Point(point) => {
+                let ApproxPoint { position, err } = ApproxPoint::of(point);
+                Approx3::direction(self.eye, position, err.max_element())
+            }
+            Direction::Crossing(splitters) => {
+                let [m, n] = splitters.map(|s| Approx3::splitter(&s, self.eye));
+                m.cross(n)
+            }
+        };
+        if !approx.is_poor() {
+            return approx;
+        }
+        self.with_integers(range_of_direction(self.range, definition), |exact| {
+            let direction = exact.direction(definition);
+            Approx3::rounded(exact.arena, direction)
+        })
+    }
+
+    /// On which side of a splitter a direction lies: the sign of `n . d`.
+    pub fn side(&mut self, direction: &Direction, splitter: &Splitter) -> Sign {
+        if lies_on(direction, splitter) {
+            self.stats.identity += 1;
+            return Sign::Zero;
+        }
+        if let Some(sign) = self.approx_direction(direction).dot_sign(&self.approx_splitter(splitter)) {
+            self.stats.filter += 1;
+            return sign;
+        }
+        if let Direction::Crossing([m, n]) = direction {
+            return self.undecided_orientation([splitter, m, n]);
+        }
+        let range = range_of_direction(range_of_splitter(self.range, splitter), direction);
+        self.decide(range, |exact| {
+            let normal = exact.splitter(splitter);
+            let direction = exact.direction(direction);
+            exact.arena.dot_sign(normal, direction)
+        })
+    }
+
+    /// The same for a direction and a splitter taken in before.
+    #[inline]
+    pub fn side_of(&mut self, direction: DirectionId, splitter: SplitterId) -> Sign {
+        let approx = &self.directions[direction.0 as usize].approx;
+        if let Some(sign) = approx.dot_sign(&self.splitters[splitter.0 as usize].approx) {
+            self.stats.filter += 1;
+            return sign;
+        }
+        self.undecided_side_of(direction, splitter)
+    }
+
+    #[cold]
+    fn undecided_side_of(&mut self, direction: DirectionId, splitter: SplitterId) -> Sign {
+        let (d, s) = (&self.directions[direction.0 as usize], &self.splitters[splitter.0 as usize]);
+        if lies_on(&d.definition, &s.definition) {
+            self.stats.identity += 1;
+            return Sign::Zero;
+        }
+        let (normal, direction) = (self.exact_splitter(splitter), self.exact_direction(direction));
+        self.count(|arena| arena.dot_sign(normal, direction))
+    }
+
+    /// The orientation of three splitters: the sign of `n_1 . (n_2 x n_3)`.
+    pub fn orientation(&mut self, splitters: [&Splitter; 3]) -> Sign {
+        let [a, b, c] = splitters;
+        if a == b || b == c || c == a {
+            self.stats.identity += 1;
+            return Sign::Zero;
+        }
+        let [p, q, r] = splitters.map(|s| self.approx_splitter(s));
+        if let Some(sign) = q.cross(r).dot_sign(&p) {
+            self.stats.filter += 1;
+            return sign;
+        }
+        self.undecided_orientation(splitters)
+    }
+
+    #[cold]
+    fn undecided_orientation(&mut self, splitters: [&Splitter; 3]) -> Sign {
+        let range = splitters.iter().fold(self.range, |range, s| range_of_splitter(range, s));
+        self.decide(range, |exact| {
+            let [a, b, c] = splitters.map(|s| exact.splitter(s));
+            exact.arena.det_sign(a, b, c)
+        })
+    }
+
+    /// The same for splitters taken in before.
+    #[inline]
+    pub fn orientation_of(&mut self, splitters: [SplitterId; 3]) -> Sign {
+        let [a, b, c] = splitters.map(|s| &self.splitters[s.0 as usize].approx);
+        if let Some(sign) = b.cross(*c).dot_sign(a) {
+            self.stats.filter += 1;
+            return sign;
+        }
+        self.undecided_orientation_of(splitters)
+    }
+
+    #[cold]
+    fn undecided_orientation_of(&mut self, splitters: [SplitterId; 3]) -> Sign {
+        let [a, b, c] = splitters.map(|s| &self.splitters[s.0 as usize].definition);
+        if a == b || b == c || c == a {
+            self.stats.identity += 1;
+            return Sign::Zero;
+        }
+        let [a, b, c] = splitters.map(|s| self.exact_splitter(s));
+        self.count(|arena| arena.det_sign(a, b, c))
+    }
+
+    /// The integers of a splitter, made at the first call. They may come from different grids: a vector
+    /// stands for its positive multiples too.
+    fn exact_splitter(&mut self, id: SplitterId) -> Num3 {
+        let known = self.splitters[id.0 as usize];
+        known.exact.unwrap_or_else(|| {
+            let range = range_of_splitter(self.range, &known.definition);
+            let exact = self.keep(range, |exact| exact.splitter(&known.definition));
+            self.splitters[id.0 as usize].exact = Some(exact);
+            exact
+        })
+    }
+
+    fn exact_direction(&mut self, id: DirectionId) -> Num3 {
+        let known = self.directions[id.0 as usize];
+        known.exact.unwrap_or_else(|| {
+            let range = range_of_direction(self.range, &known.definition);
+            let exact = self.keep(range, |exact| exact.direction(&known.definition));
+            self.directions[id.0 as usize].exact = Some(exact);
+            exact
+        })
+    }
+
+    /// Whether two splitters are one great circle.
+    pub fn compare_circles(&mut self, a: &Splitter, b: &Splitter) -> CircleRelation {
+        if a == b {
+            self.stats.identity += 1;
+            return CircleRelation::Same;
+        }
+        let (p, q) = (self.approx_splitter(a), self.approx_splitter(b));
+        if p.not_parallel(&q) {
+            self.stats.filter += 1;
+            return CircleRelation::Different;
+        }
+        let range = range_of_splitter(range_of_splitter(self.range, a), b);
+        let sign = self.decide(range, |exact| {
+            let (m, n) = (exact.splitter(a), exact.splitter(b));
+            exact.arena.parallel(m, n)
+        });
+        match sign {
+            Sign::Positive => CircleRelation::Same,
+            Sign::Negative => CircleRelation::Opposite,
+            Sign::Zero => CircleRelation::Different,
+        }
+    }
+
+    /// Where `other` lies on a great circle, seen from `from`; both must lie on it.
+    pub fn order_along(&mut self, circle: &Splitter, from: &Direction, other: &Direction) -> Along {
+        if from == other {
+            self.stats.identity += 1;
+            return Along::Same;
+        }
+        let (n, p, q) = (self.approx_splitter(circle), self.approx_direction(from), self.approx_direction(other));
+        let ahead = if let Some(sign) = p.cross(q).dot_sign(&n) {
+            self.stats.filter += 1;
+            sign
+        } else {
+            let range = range_of_splitter(range_of_direction(range_of_direction(self.range, from), other), circle);
+            self.decide(range, |exact| {
+                let (n, p, q) = (exact.splitter(circle), exact.direction(from), exact.direction(other));
+                exact.arena.det_sign(n, p, q)
+            })
+        };
+        match ahead {
+            Sign::Positive => Along::Ahead,
+            Sign::Negative => Along::Behind,
+            // Parallel: a dot product of their size has the right sign in floating point.
+            Sign::Zero if p.v.dot(q.v) > 0.0 => Along::Same,
+            Sign::Zero => Along::Opposite,
+        }
+    }
+
+    /// On which side of a plane a point lies: in front, on it or behind.
+    pub fn plane_side(&mut self, point: &Point, plane: &Plane) -> Sign {
+        if point_in_plane(point, plane) {
+            self.stats.identity += 1;
+            return Sign::Zero;
+        }
+        let known = match (point, plane) {
+            (Point::Given(p), Plane::Axis { axis, value }) => compare(p[*axis], *value),
+            (Point::Given(p), Plane::Points([a, b, c])) => orient3d_filter(*a, *b, *c, *p),
+            _ => {
+                let height = ApproxPlane::new(plane).height(&ApproxPoint::of(point));
+                (height.mid.abs() > height.rad).then(|| Sign::of(height.mid))
+            }
+        };
+        if let Some(sign) = known {
+            self.stats.filter += 1;
+            return sign;
+        }
+        if let (Point::Given(p), Plane::Points([a, b, c])) = (point, plane)
+            && let Some(sign) = orient3d_expansions(*a, *b, *c, *p)
+        {
+            self.stats.fixed += 1;
+            return sign;
+        }
+        let range = range_of_point_definition(range_of_plane(self.range, plane), point);
+        self.decide(range, |exact| {
+            let (x, w) = exact.point(point);
+            let (normal, height) = exact.plane(plane);
+            exact.arena.height_sign(normal, height, x, w)
+        })
+    }
+
+    /// Which of two planes a ray from the eye meets first: `Less` for the first plane. Neither plane may
+    /// hold the eye, and the ray must meet both.
+    pub fn depth_order(&mut self, planes: [&Plane; 2], direction: &Direction) -> Ordering {
+        // 1/t_Q - 1/t_P = (N_P . d) / h_P - (N_Q . d) / h_Q, the sign of which is that of the crease
+        // h_Q N_P - h_P N_Q along d, times those of the heights.
+        let eye = Point::Given(self.eye);
+        let heights = self.plane_side(&eye, planes[0]) * self.plane_side(&eye, planes[1]);
+        debug_assert!(!heights.is_zero(), "the eye lies in neither plane");
+        if planes[0] == planes[1] {
+            return Ordering::Equal;
+        }
+        let crease = Splitter::Crease(planes.map(|p| *p));
+        match self.side(direction, &crease) * heights {
+            Sign::Positive => Ordering::Greater,
+            Sign::Zero => Ordering::Equal,
+            Sign::Negative => Ordering::Less,
+        }
+    }
+
+    /// Decides with integers and counts which kind.
+    fn decide(&mut self, range: BitRange, decide: impl FnOnce(&mut Constructor<'_>) -> Sign) -> Sign {
+        let arbitrary = self.arena.arbitrary_signs();
+        let sign = self.with_integers(range, decide);
+        self.count_stage(arbitrary);
+        sign
+    }
+
+    /// Decides with integers made before and counts which kind.
+    fn count(&mut self, decide: impl FnOnce(&mut Arena) -> Sign) -> Sign {
+        let arbitrary = self.arena.arbitrary_signs();
+        let sign = decide(&mut self.arena);
+        self.count_stage(arbitrary);
+        sign
+    }
+
+    fn count_stage(&mut self, arbitrary_before: u64) {
+        if self.arena.arbitrary_signs() == arbitrary_before {
+            self.stats.fixed += 1;
+        } else {
+            self.stats.arbitrary += 1;
+        }
+    }
+
+    /// Makes an integer vector that stays.
+    fn keep(&mut self, range: BitRange, make: impl FnOnce(&mut Constructor<'_>) -> Num3) -> Num3 {
+        let wider = (range != self.range).then(|| Frame::new(range, self.eye));
+        let frame = wider.as_ref().unwrap_or(&self.frame);
+        let mark = self.arena.mark();
+        let made = make(&mut Constructor { frame, arena: &mut self.arena });
+        self.arena.keep3(mark, made)
+    }
+
+    /// Works with integers on a grid that holds `range`.
+    fn with_integers<T>(&mut self, range: BitRange, work: impl FnOnce(&mut Constructor<'_>) -> T) -> T {
+        let wider = (range != self.range).then(|| Frame::new(range, self.eye));
+        let frame = wider.as_ref().unwrap_or(&self.frame);
+        let mark = self.arena.mark();
+        let result = work(&mut Constructor { frame, arena: &mut self.arena });
+        self.arena.release(mark);
+        result
+    }
+}
+
+impl Approx3 {
+    /// An integer vector rounded: each component is off by `2 u` relatively.
+    pub(crate) fn rounded(arena: &Arena, exact: Num3) -> Self {
+        Self::known(arena.direction(exact), 4.0 * U)
+    }
+}
+
+impl ApproxPoint {
+    /// A point by its definition.
+    fn of(point: &Point) -> Self {
+        match point {
+            Point::Given(p) => Self::exact(*p),
+            Point::EdgePlane(ends, plane) => {
+                let [a, b] = ends.map(Self::exact);
+                let plane = ApproxPlane::new(plane);
+                Self::between(a, b, plane.height(&a), plane.height(&b))
+            }
+            // No cheap approximation is good enough to be worth it: integers round it.
+            Point::Planes(_) => Self { position: DVec3::ZERO, err: DVec3::INFINITY },
+        }
+    }
+}
+
+/// The sign of a difference, which comparing finds without rounding.
+fn compare(a: f64, b: f64) -> Option<Sign> {
+    if a.is_finite() && b.is_finite() { a.partial_cmp(&b).map(Sign::from) } else { None }
+}
+
+/// True if a direction is known to lie on a splitter by what the two are defined from.
+fn lies_on(direction: &Direction, splitter: &Splitter) -> bool {
+    match (direction, splitter) {
+        (Direction::Crossing(pair), _) => pair.contains(splitter),
+        (Direction::Point(Point::Given(p)), Splitter::Edge(ends)) => ends.contains(p),
+        (Direction::Point(Point::EdgePlane(ends, _)), Splitter::Edge(other)) => {
+            ends == other || (ends[0] == other[1] && ends[1] == other[0])
+        }
+        (Direction::Point(Point::Planes(three)), Splitter::Crease(two)) => two.iter().all(|p| three.contains(p)),
+        _ => false,
+    }
+}
+
+/// True if a point is known to lie in a plane by what the two are defined from.
+fn point_in_plane(point: &Point, plane: &Plane) -> bool {
+    match (point, plane) {
+        (Point::Given(p), Plane::Points(points)) => points.contains(p),
+        (Point::EdgePlane(_, cut), _) if cut == plane => true,
+        (Point::EdgePlane(ends, _), Plane::Points(points)) => ends.iter().all(|end| points.contains(end)),
+        (Point::Planes(planes), _) => planes.contains(plane),
+        _ => false,
+    }
+}
+
+fn range_of_point(range: BitRange, point: DVec3) -> BitRange {
+    assert!(point.is_finite(), "exact predicates take finite coordinates, not {point}");
+    point.to_array().into_iter().fold(range, BitRange::with)
+}
+
+fn range_of_plane(range: BitRange, plane: &Plane) -> BitRange {
+    plane.coordinates().into_iter().fold(range, range_of_point)
+}
+
+fn range_of_point_definition(range: BitRange, point: &Point) -> BitRange {
+    match point {
+        Point::Given(p) => range_of_point(range, *p),
+        Point::EdgePlane(ends, plane) => ends.iter().copied().fold(range_of_plane(range, plane), range_of_point),
+        Point::Planes(planes) => planes.iter().fold(range, range_of_plane),
+    }
+}
+
+fn range_of_splitter(range: BitRange, splitter: &Splitter) -> BitRange {
+    match splitter {
+        Splitter::Edge(ends) => ends.iter().copied().fold(range, range_of_point),
+        Splitter::Crease(planes) => planes.iter().fold(range, range_of_plane),
+        // A given normal is a vector in units of its own.
+        Splitter::Given(normal) => {
+            assert!(normal.is_finite(), "exact predicates take finite coordinates, not {normal}");
+            range
+        }
+        Splitter::Parallel(plane) => range_of_plane(range, plane),
+    }
+}
+
+fn range_of_direction(range: BitRange, direction: &Direction) -> BitRange {
+    match direction {
+        Direction::Given(d) => {
+            assert!(d.is_finite(), "exact predicates take finite coordinates, not {d}");
+            range
+        }
+        Direction::Point(point) => range_of_point_definition(range, point),
+        Direction::Crossing(splitters) => splitters.iter().fold(range, range_of_splitter),
+    }
+}

@@ -1,0 +1,37 @@
+//! How often each stage of the predicates was reached.
+
+use std::ops::AddAssign;
+
+/// Calls of predicates and what decided them. Every call is decided by exactly one stage.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PredicateStats {
+    /// Decided by the f64 filter.
+    pub filter: u64,
+    /// Left undecided by the filter, then known by identity: a direction on a splitter that defines it.
+    pub identity: u64,
+    /// Decided by integers of fixed width, or by expansions.
+    pub fixed: u64,
+    /// Decided by integers of arbitrary width.
+    pub arbitrary: u64,
+}
+
+impl PredicateStats {
+    /// All calls.
+    pub fn calls(&self) -> u64 {
+        self.filter + self.undecided()
+    }
+
+    /// The calls that the filter left undecided.
+    pub fn undecided(&self) -> u64 {
+        self.identity + self.fixed + self.arbitrary
+    }
+}
+
+impl AddAssign for PredicateStats {
+    fn add_assign(&mut self, other: Self) {
+        self.filter += other.filter;
+        self.identity += other.identity;
+        self.fixed += other.fixed;
+        self.arbitrary += other.arbitrary;
+    }
+}
