@@ -42,10 +42,10 @@ fn closed(kind: Kind, polygons: usize) {
     for (k, point) in mesh.floor_points(10, 4).into_iter().enumerate() {
         let what = format!("{kind} {polygons}, floor point {k}");
         let point = DVec3::from(point);
-        let (polygon, side) = Viewpoint::surface_at(&scene, point, DVec3::Z).expect("a floor point lies on the floor");
+        let (piece, side) = Viewpoint::surface_at(&scene, point, DVec3::Z).expect("a floor point lies on the floor");
         assert_eq!(side, Side::Front, "{what}");
-        assert!(floor.contains(&polygon), "{what}");
-        let viewpoint = Viewpoint::on_surface(&scene, polygon, side, point).expect("a floor with area");
+        assert!(floor.contains(&scene.piece(piece).polygon()), "{what}");
+        let viewpoint = Viewpoint::on_piece(&scene, piece, side, point).expect("a finite point");
         let image = bsp.view(&viewpoint, &Domain::Above).expect("a viewpoint on a surface");
         check_sums(&image, &what);
         assert!(image.form_factors().is_some_and(|factors| factors.background < 1e-12), "{what}: background is seen");

@@ -193,7 +193,7 @@ fn crossing_slivers(n: usize) -> Faces {
 #[test]
 fn limits_end_with_an_error() {
     let scene = crossing_slivers(60).build();
-    let limited = BspOptions { max_fragments: 100, ..BspOptions::default() };
+    let limited = BspOptions { max_fragments: Some(100), ..BspOptions::default() };
     let error = SceneBsp::build(&scene, &limited).unwrap_err();
     assert_eq!(error, BspError::TooManyFragments { limit: 100 });
     let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();

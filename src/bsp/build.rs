@@ -9,21 +9,15 @@ use crate::scene::{PieceId, PlaneId, PolygonId, Scene};
 use std::sync::Arc;
 
 /// How a [`SceneBsp`] is built.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct BspOptions {
     /// A fragment that pokes less than this through a splitting plane, in scene units, is not cut
     /// there. The default is 0: exact order from every viewpoint.
     pub epsilon: f64,
     /// Building ends with an error when splits have made more fragments than this: polygons that all
-    /// pass through each other make about the square of their number. The default, 2^24, takes
-    /// about 4 GiB.
-    pub max_fragments: usize,
-}
-
-impl Default for BspOptions {
-    fn default() -> Self {
-        Self { epsilon: 0.0, max_fragments: 1 << 24 }
-    }
+    /// pass through each other make about the square of their number. `None` stands for 64 times the
+    /// number of pieces, or 2^20 if that is more (about 0.4 GiB).
+    pub max_fragments: Option<usize>,
 }
 
 /// Why a [`SceneBsp`] was not built.
@@ -80,7 +74,7 @@ impl SceneBsp {
             slivers: Vec::new(),
             stats: BspStats::default(),
             epsilon,
-            max_fragments: options.max_fragments,
+            max_fragments: options.max_fragments.unwrap_or((64 * scene.piece_count()).max(1 << 20)),
         };
         builder.run(scene)?;
         let Builder { skeleton, mut nodes, fragments, sides, slivers, mut stats, .. } = builder;

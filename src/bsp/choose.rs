@@ -46,6 +46,11 @@ pub(super) fn choose(skeleton: &Skeleton, items: &[Candidate<'_>], grid: &dyn Fn
 fn best_axis_plane(items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Option<(Axis, f64)> {
     let whole = items.iter().fold(Bounds::EMPTY, |b, item| b.union(item.bounds));
     let total = items.len();
+    // Areas relative to the node's size: right at any scale.
+    let unit = whole.extent();
+    if unit <= 0.0 || !unit.is_finite() {
+        return None;
+    }
     let mut best: Option<(f64, Axis, f64)> = None;
     let mut counts = Vec::new();
     for axis in Axis::ALL {
@@ -87,9 +92,9 @@ fn best_axis_plane(items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Optio
             let (mut below, mut above) = (whole, whole);
             below.high[k] = c;
             above.low[k] = c;
-            let cost = below.half_area() * (back + spanning) as f64
-                + above.half_area() * (front + spanning) as f64
-                + CUT * whole.half_area() * spanning as f64;
+            let cost = below.half_area(unit) * (back + spanning) as f64
+                + above.half_area(unit) * (front + spanning) as f64
+                + CUT * whole.half_area(unit) * spanning as f64;
             if cost.is_finite() && best.is_none_or(|(least, ..)| cost < least) {
                 best = Some((cost, axis, c));
             }
@@ -110,7 +115,7 @@ fn best_polygon_plane(skeleton: &Skeleton, items: &[Candidate<'_>]) -> PlaneId {
             if item.own == plane {
                 continue;
             }
-            let tolerance = 1e-9 * (item.bounds.high - item.bounds.low).max_element();
+            let tolerance = 1e-9 * item.bounds.extent();
             let (mut low, mut high) = (0.0f64, 0.0f64);
             for side in item.sides {
                 let h = skeleton.rounded_height(plane, side.point);

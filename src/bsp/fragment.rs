@@ -54,9 +54,14 @@ impl Bounds {
         Self { low: self.low.min(other.low), high: self.high.max(other.high) }
     }
 
-    /// Half its surface area; 0 if empty.
-    pub(crate) fn half_area(self) -> f64 {
-        let d = (self.high - self.low).max(DVec3::ZERO);
+    /// The length of its longest side; 0 if empty.
+    pub(crate) fn extent(self) -> f64 {
+        (self.high - self.low).max_element().max(0.0)
+    }
+
+    /// Half its surface area with `unit` for a unit of length; 0 if empty.
+    pub(crate) fn half_area(self, unit: f64) -> f64 {
+        let d = (self.high - self.low).max(DVec3::ZERO) / unit;
         d.x * d.y + d.y * d.z + d.z * d.x
     }
 }

@@ -102,7 +102,7 @@ impl Skeleton {
         if let SupportingPlane::Axis { axis, value } = plane {
             self.axis_planes.insert((axis, value.to_bits()), id);
         }
-        self.approx_planes.push(ApproxPlane::new(&self.resolved_plane(id)));
+        self.approx_planes.push(ApproxPlane::refined(&self.resolved_plane(id)));
         id
     }
 

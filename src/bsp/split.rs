@@ -48,8 +48,13 @@ impl Splitter {
         let any_front = self.signs.contains(&Sign::Positive);
         let any_back = self.signs.contains(&Sign::Negative);
         if epsilon > 0.0 {
-            let heights = sides.iter().map(|side| skeleton.rounded_height(plane, side.point));
-            let (far_front, far_back) = heights.fold((false, false), |(f, b), h| (f || h > epsilon, b || h < -epsilon));
+            let (mut far_front, mut far_back) = (false, false);
+            for (side, sign) in sides.iter().zip(&self.signs) {
+                let height = skeleton.rounded_height(plane, side.point);
+                // What overflows is far.
+                far_front |= height > epsilon || (!height.is_finite() && sign.is_positive());
+                far_back |= height < -epsilon || (!height.is_finite() && sign.is_negative());
+            }
             match (far_front, far_back) {
                 (false, false) => return Placement::Coplanar { exactly: !any_front && !any_back },
                 (true, false) if any_front => return Placement::Front { exactly: !any_back },

@@ -1,9 +1,10 @@
 //! Where one stands.
 
 use crate::bsp::SceneBsp;
-use crate::exact::{Sign, orient3d};
+use crate::exact::{ApproxPlane, Plane, Sign, orient3d};
 use crate::scene::{PieceId, PieceRef, PolygonId, Scene, Side, SupportingPlane};
 use glam::DVec3;
+use std::cmp::Ordering;
 
 /// A viewpoint: a point in space, or a point on one side of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,8 +44,8 @@ impl Viewpoint {
 
     /// A point on one side of a polygon: the one nearest to `near`.
     ///
-    /// The eye is the nearest f64 point that does not lie behind the plane of the polygon's piece,
-    /// seen from that side: its exact height over the plane is at least 0. So the piece, and all
+    /// The eye is an f64 point next to that one that does not lie behind the plane of the polygon's
+    /// piece, seen from that side: its exact height over the plane is at least 0. So the piece, and all
     /// that is exactly coplanar with it, lies at or below the horizon of
     /// [`Domain::Above`](super::Domain::Above).
     ///
@@ -57,26 +58,50 @@ impl Viewpoint {
         if !near.is_finite() {
             return Err(SurfaceError::NotFinite);
         }
-        let (_, foot, piece) =
-            nearest_piece(scene.polygon(polygon).pieces(), near).ok_or(SurfaceError::NoArea { polygon })?;
-        let eye = not_behind(scene, piece, side, foot);
-        Ok(Self { eye, surface: Some((piece.id(), polygon, side)) })
+        let nearest = scene.polygon(polygon).pieces().map(|piece| Foot::on(piece, near)).min_by(Foot::compare);
+        let foot = nearest.ok_or(SurfaceError::NoArea { polygon })?;
+        Ok(Self::at(scene, &foot, side))
     }
 
-    /// The surface that a sensor at `eye` with that normal is meant to be on: the nearest piece within
-    /// 1e-9 of the scene's diagonal whose normal is within 1e-6 rad of `normal` or its opposite.
-    pub fn surface_at(scene: &Scene, eye: DVec3, normal: DVec3) -> Option<(PolygonId, Side)> {
+    /// The same on one piece of a polygon.
+    ///
+    /// # Errors
+    /// If `near` is not finite.
+    ///
+    /// # Panics
+    /// If there is no such piece.
+    pub fn on_piece(scene: &Scene, piece: PieceId, side: Side, near: DVec3) -> Result<Self, SurfaceError> {
+        if !near.is_finite() {
+            return Err(SurfaceError::NotFinite);
+        }
+        Ok(Self::at(scene, &Foot::on(scene.piece(piece), near), side))
+    }
+
+    fn at(scene: &Scene, foot: &Foot<'_>, side: Side) -> Self {
+        let eye = not_behind(scene, foot.piece, side, foot.position);
+        Self { eye, surface: Some((foot.piece.id(), foot.piece.polygon(), side)) }
+    }
+
+    /// The surface that a sensor at `eye` with that normal, of any length, is meant to be on: a piece
+    /// within 1e-9 of the scene's diagonal whose normal is within 1e-6 rad of `normal` or its opposite, and
+    /// its side there. Of several, one that shows its front, then the nearest, then the lowest number.
+    pub fn surface_at(scene: &Scene, eye: DVec3, normal: DVec3) -> Option<(PieceId, Side)> {
         let reach = 1e-9 * scene.diagonal();
-        let normal = normal.try_normalize()?;
-        let parallel = scene.pieces().filter(|&piece| {
+        let normal = (normal / normal.abs().max_element()).try_normalize()?;
+        let candidates = scene.pieces().filter_map(|piece| {
             let corners = piece.points();
-            let near = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
-            let inside = (near.0 - reach).cmple(eye) & (near.1 + reach).cmpge(eye);
-            inside.all() && unit_normal(scene, piece).cross(normal).length() <= 1e-6
+            let (low, high) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
+            let near = (low - reach).cmple(eye) & (high + reach).cmpge(eye);
+            let facing = near.all().then(|| unit_normal(scene, piece))?;
+            if facing.cross(normal).length() > 1e-6 {
+                return None;
+            }
+            let foot = Foot::on(piece, eye);
+            let side = if facing.dot(normal) > 0.0 { Side::Front } else { Side::Back };
+            (foot.distance <= reach).then_some((side, foot))
         });
-        let (distance, _, piece) = nearest_piece(parallel, eye)?;
-        let side = if unit_normal(scene, piece).dot(normal) > 0.0 { Side::Front } else { Side::Back };
-        (distance <= reach).then_some((piece.polygon(), side))
+        let best = candidates.min_by(|a, b| a.0.cmp(&b.0).then_with(|| a.1.compare(&b.1)));
+        best.map(|(side, foot)| (foot.piece.id(), side))
     }
 
     /// The position.
@@ -97,55 +122,73 @@ impl Viewpoint {
     /// The unit normal of the surface it is on, away from it.
     pub(crate) fn surface_normal(&self, bsp: &SceneBsp) -> Option<DVec3> {
         let (piece, _, side) = self.surface?;
-        let normal = unit_normal(bsp.scene(), bsp.scene().piece(piece));
-        Some(if side == Side::Front { normal } else { -normal })
+        let piece = bsp.scene().piece(piece);
+        let normal = bsp.tree.skeleton.approx_normal(piece.plane_id()).v.normalize();
+        Some(if side == piece.facing() { normal } else { -normal })
     }
 }
 
-/// The distance to the nearest of some pieces, the nearest point on it, and the piece.
-fn nearest_piece<'a>(pieces: impl Iterator<Item = PieceRef<'a>>, near: DVec3) -> Option<(f64, DVec3, PieceRef<'a>)> {
-    let with_feet = pieces.map(|piece| {
-        let foot = nearest_point(piece, near);
-        (foot.distance(near), foot, piece)
-    });
-    with_feet.min_by(|a, b| a.0.total_cmp(&b.0))
+/// The point of a piece that is nearest to another point, rounded.
+struct Foot<'a> {
+    piece: PieceRef<'a>,
+    position: DVec3,
+    distance: f64,
+}
+
+impl<'a> Foot<'a> {
+    fn on(piece: PieceRef<'a>, near: DVec3) -> Self {
+        // Scaled by a power of two, so that no square and no product under- or overflows.
+        let most = piece.points().fold(near.abs(), |most, p| most.max(p.abs())).max_element();
+        let scale = power_of_two_at_most(most);
+        let corners: Vec<DVec3> = piece.points().map(|p| p / scale).collect();
+        let near = near / scale;
+        let position = nearest_point(&corners, unit_normal(piece.scene(), piece), near);
+        let distance = position.distance(near) * scale;
+        let mut position = position * scale;
+        if let SupportingPlane::Axis { axis, value } = piece.plane() {
+            position[axis as usize] = value;
+        }
+        Self { piece, position, distance }
+    }
+
+    fn compare(&self, other: &Self) -> Ordering {
+        self.distance.total_cmp(&other.distance)
+    }
+}
+
+/// The largest power of two that is not above a positive number; at least 2^-1022.
+fn power_of_two_at_most(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & (0x7ff << 52)).max(f64::MIN_POSITIVE)
 }
 
 /// The unit normal of a piece, to its front.
 fn unit_normal(scene: &Scene, piece: PieceRef<'_>) -> DVec3 {
-    let normal = match piece.plane() {
-        SupportingPlane::Axis { axis, .. } => DVec3::AXES[axis as usize],
-        SupportingPlane::Points(points) => {
-            let [a, b, c] = points.map(|v| scene.vertex(v));
-            let (p, q) = (b - a, c - a);
-            // Scaled, so that neither the product nor the square of its length under- or overflows.
-            let scale = |v: DVec3| v / v.abs().max_element();
-            scale(p).cross(scale(q)).normalize_or_zero()
-        }
+    let plane = match piece.plane() {
+        SupportingPlane::Axis { axis, value } => Plane::Axis { axis: axis as usize, value },
+        SupportingPlane::Points(points) => Plane::Points(points.map(|v| scene.vertex(v))),
     };
+    let normal = ApproxPlane::refined(&plane).normal.v.normalize();
     if piece.facing() == Side::Front { normal } else { -normal }
 }
 
-/// The point of a convex piece that is nearest to `near`, rounded.
-fn nearest_point(piece: PieceRef<'_>, near: DVec3) -> DVec3 {
-    let corners: Vec<DVec3> = piece.points().collect();
-    let normal = unit_normal(piece.scene(), piece);
-    let mut foot = near - normal * normal.dot(near - corners[0]);
-    if let SupportingPlane::Axis { axis, value } = piece.plane() {
-        foot[axis as usize] = value;
-    }
+/// The point of a convex piece with that unit normal that is nearest to `near`.
+fn nearest_point(corners: &[DVec3], normal: DVec3, near: DVec3) -> DVec3 {
+    let onto_plane = |p: DVec3| p - normal * normal.dot(p - corners[0]);
+    // From afar the first projection is off in proportion to the distance; the second mends that.
+    let foot = onto_plane(onto_plane(near));
     let segments = || corners.iter().zip(corners.iter().cycle().skip(1));
     if segments().all(|(&a, &b)| normal.cross(b - a).dot(foot - a) >= 0.0) {
         return foot;
     }
     let on_segments = segments().map(|(&a, &b)| {
         let ab = b - a;
-        a + ab * ((near - a).dot(ab) / ab.length_squared()).clamp(0.0, 1.0)
+        a + ab * ((foot - a).dot(ab) / ab.length_squared()).clamp(0.0, 1.0)
     });
-    on_segments.min_by(|p, q| p.distance_squared(near).total_cmp(&q.distance_squared(near))).unwrap_or(foot)
+    on_segments.min_by(|p, q| p.distance_squared(foot).total_cmp(&q.distance_squared(foot))).unwrap_or(foot)
 }
 
-/// The f64 point nearest to `foot`, which lies near the piece's plane, that is not behind it.
+/// An f64 point that is not behind the piece's plane: that nearest to `foot`, which lies close to the plane,
+/// among those up to two places away in two coordinates and any number of places in the third.
 fn not_behind(scene: &Scene, piece: PieceRef<'_>, side: Side, foot: DVec3) -> DVec3 {
     // A foot in an axis-aligned plane is exactly in it.
     let SupportingPlane::Points(points) = piece.plane() else { return foot };

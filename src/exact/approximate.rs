@@ -1,8 +1,11 @@
 //! Definitions in floating point, with proven bounds: what the filters work on.
 
 use super::approx::Approx3;
+use super::arena::Arena;
 use super::ball::Ball;
+use super::construct::Constructor;
 use super::definition::{Plane, Splitter};
+use super::frame::{BitRange, Frame};
 use glam::DVec3;
 
 /// A position with a bound on the error of each coordinate; 0 where a coordinate is exact.
@@ -59,6 +62,18 @@ impl ApproxPlane {
             }
             Plane::Points([a, b, c]) => Self { normal: Approx3::edge_normal(a, b, c), anchor: a, axis: None },
         }
+    }
+
+    /// The same with a normal from integers where f64 alone would know it poorly.
+    pub(crate) fn refined(plane: &Plane) -> Self {
+        let mut approx = Self::new(plane);
+        if approx.normal.is_poor() {
+            let frame = Frame::new(BitRange::of(plane.coordinates()), approx.anchor);
+            let mut arena = Arena::default();
+            let (normal, _) = Constructor { frame: &frame, arena: &mut arena }.plane(plane);
+            approx.normal = Approx3::rounded(&arena, normal);
+        }
+        approx
     }
 
     /// The height of a point, in units of the stored normal.

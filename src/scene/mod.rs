@@ -258,9 +258,14 @@ impl Scene {
         Some(vertices.fold((first, first), |(low, high), p| (low.min(p), high.max(p))))
     }
 
-    /// The length of the diagonal of [`Scene::bounds`]; 0 for an empty scene.
+    /// The length of the diagonal of [`Scene::bounds`]; 0 for an empty scene, the largest f64 if it is
+    /// longer than that.
     pub fn diagonal(&self) -> f64 {
-        self.bounds().map_or(0.0, |(low, high)| (high - low).length())
+        let Some((low, high)) = self.bounds() else { return 0.0 };
+        // Halves cannot overflow, and squares of what is at most 1 do not.
+        let half = high * 0.5 - low * 0.5;
+        let most = half.max_element();
+        if most == 0.0 { 0.0 } else { ((half / most).length() * most * 2.0).min(f64::MAX) }
     }
 }
 

@@ -16,7 +16,10 @@ impl Contour {
         };
         let surface = if self.free { None } else { Viewpoint::surface_at(scene, self.eye, normal) };
         match surface {
-            Some((polygon, side)) => Ok((self.on_polygon(scene, polygon, side)?, Domain::Above)),
+            Some((piece, side)) => {
+                let viewpoint = Viewpoint::on_piece(scene, piece, side, self.eye);
+                Ok((viewpoint.map_err(|error| self.failure(&error))?, Domain::Above))
+            }
             None => Ok((Viewpoint::free(self.eye), Domain::Hemisphere(normal))),
         }
     }
@@ -24,7 +27,11 @@ impl Contour {
     fn on_polygon(&self, scene: &Scene, polygon: PolygonId, side: Side) -> Result<Viewpoint, Failure> {
         Viewpoint::on_surface(scene, polygon, side, self.eye).map_err(|error| match error {
             SurfaceError::UnknownPolygon { .. } => Failure::Usage(format!("--on: {error}")),
-            _ => Failure::Work(format!("{}: {error}", self.scene.display())),
+            _ => self.failure(&error),
         })
+    }
+
+    fn failure(&self, error: &SurfaceError) -> Failure {
+        Failure::Work(format!("{}: {error}", self.scene.display()))
     }
 }

@@ -1,0 +1,78 @@
+//! Standing on polygons: folded ones, slivers, thin walls, from near and from far.
+
+mod common;
+
+use common::Faces;
+use glam::DVec3;
+use nusselt::bsp::{BspOptions, SceneBsp};
+use nusselt::contour::{Domain, Viewpoint};
+use nusselt::scene::{PolygonId, Side};
+
+#[test]
+fn a_sensor_on_a_folded_polygon_stands_on_the_piece_with_its_normal() {
+    let mut faces = Faces::default();
+    faces.face(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 1.0], [0.0, 1.0, 0.0]].map(DVec3::from));
+    let scene = faces.build();
+    assert_eq!(scene.piece_count(), 2);
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    for piece in scene.pieces() {
+        let corners: Vec<DVec3> = piece.points().collect();
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        for eye in [DVec3::ZERO, DVec3::ONE, DVec3::splat(0.5)] {
+            if !corners.contains(&eye) && eye != DVec3::splat(0.5) {
+                continue;
+            }
+            let (found, side) = Viewpoint::surface_at(&scene, eye, normal).unwrap();
+            assert_eq!((found, side), (piece.id(), Side::Front));
+            let viewpoint = Viewpoint::on_piece(&scene, found, side, eye).unwrap();
+            let image = bsp.view(&viewpoint, &Domain::Above).unwrap();
+            assert!(image.normal().unwrap().distance(normal.normalize()) < 1e-15);
+        }
+    }
+}
+
+#[test]
+fn on_a_sliver_the_factors_still_sum_to_1() {
+    let mut faces = Faces::default();
+    faces.face(&[[0.0, 0.0, 0.0], [10.0, 1.0, 3.0], [20.0, 2.0, 6.000_000_000_000_001]].map(DVec3::from));
+    faces.face(&[[0.0, 0.0, 5.0], [5.0, 0.0, 5.0], [0.0, 5.0, 6.0]].map(DVec3::from));
+    let scene = faces.build();
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    for side in [Side::Front, Side::Back] {
+        let viewpoint = Viewpoint::on_surface(&scene, PolygonId(0), side, DVec3::new(5.0, 0.5, 1.5)).unwrap();
+        let image = bsp.view(&viewpoint, &Domain::Above).unwrap();
+        let total = image.form_factors().unwrap().total();
+        assert!((total - 1.0).abs() < 1e-12, "{total}");
+    }
+}
+
+#[test]
+fn on_a_thin_wall_the_face_that_shows_its_front_is_taken() {
+    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]].map(DVec3::from);
+    let mut faces = Faces::default();
+    let mut reversed = square;
+    reversed.reverse();
+    faces.face(&reversed);
+    faces.face(&square);
+    let scene = faces.build();
+    for (normal, polygon) in [(DVec3::Z, PolygonId(1)), (DVec3::NEG_Z, PolygonId(0))] {
+        let (piece, side) = Viewpoint::surface_at(&scene, DVec3::new(0.5, 0.5, 0.0), normal).unwrap();
+        assert_eq!((scene.piece(piece).polygon(), side), (polygon, Side::Front));
+    }
+}
+
+#[test]
+fn from_far_above_one_lands_on_the_plane() {
+    let corners = [[0.0, 0.0, 0.0], [10.0, 1.0, 3.0], [12.0, 9.0, 4.5]].map(DVec3::from);
+    let mut faces = Faces::default();
+    faces.face(&corners);
+    let scene = faces.build();
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+    let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
+    for distance in [1.0, 1e3, 1e9, 1e12] {
+        let viewpoint = Viewpoint::on_surface(&scene, PolygonId(0), Side::Front, middle + normal * distance).unwrap();
+        // The far point itself is rounded: by 1e-16 of the distance along the plane, which moves the foot;
+        // off the plane only the last places of the coordinates remain.
+        assert!(normal.dot(viewpoint.eye() - corners[0]).abs() < 1e-14, "from {distance}: {viewpoint:?}");
+    }
+}
