@@ -24,7 +24,7 @@ impl Contour {
     fn on_polygon(&self, scene: &Scene, polygon: PolygonId, side: Side) -> Result<Viewpoint, Failure> {
         Viewpoint::on_surface(scene, polygon, side, self.eye).map_err(|error| match error {
             SurfaceError::UnknownPolygon { .. } => Failure::Usage(format!("--on: {error}")),
-            _ => Failure::Work(format!("{}: {error}", self.scene.display())),
+            _ => Failure::about(&self.scene, &error),
         })
     }
 }
