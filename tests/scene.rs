@@ -466,7 +466,7 @@ proptest! {
 
 /// One convex polygon; its pieces are checked one by one.
 fn convex(points: &[[f64; 2]]) -> Scene {
-    let scene = flat(&[points.to_vec()]).unwrap();
+    let scene = flat(&[points.to_vec()]).expect("one sound polygon");
     assert_eq!(scene.polygon(PolygonId(0)).shape(), Shape::Convex);
     check(&scene);
     let pieces = scene.piece_count();
