@@ -143,7 +143,7 @@ fn no_name_of_a_material_is_default() {
     assert_eq!(loaded.warnings, [""; 0]);
     let materials = loaded.scene.materials();
     assert_eq!(materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), ["default", "a"]);
-    assert_eq!(materials[0].diffuse, [1.0, 0.0, 0.0]);
+    assert_eq!(materials[0].diffuse.map(f64::to_bits), [1.0, 0.0, 0.0].map(f64::to_bits));
     assert_eq!(parse(&format!("{SQUARE}usemtl\nf 1 2 3")).unwrap().warnings, [""; 0]);
 }
 
