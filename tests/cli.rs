@@ -244,7 +244,11 @@ fn what_cannot_be_read_or_written_is_named_and_leaves_nothing_behind() {
     folder.write("nan.obj", "v 0 0 0\nv 1 nan 0\nv 1 1 0\nf 1 2 3\n");
     folder.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
     folder.write("scene.xyz", "");
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("/dev/zero", folder.0.join("endless.obj")).expect("a link");
     let before = folder.files();
+    #[cfg(unix)]
+    assert!(folder.run("info endless.obj", 1).contains("endless.obj: it is not a regular file"));
     for (line, named) in [
         ("contour nowhere.obj --eye 1,2,3 --sphere -o x.json", "nowhere.obj"),
         ("contour bad.obj --eye 1,2,3 --sphere -o x.json", "bad.obj:3"),
@@ -259,6 +263,56 @@ fn what_cannot_be_read_or_written_is_named_and_leaves_nothing_behind() {
         assert_eq!(message.lines().filter(|line| line.starts_with("nusselt: ")).count(), 1, "{message}");
     }
     assert_eq!(folder.files(), before);
+}
+
+#[test]
+fn outputs_never_replace_what_is_read() {
+    let folder = Folder::new("keep");
+    let scene = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
+    folder.write("a.obj", &format!("mtllib b.mtl\n{scene}"));
+    folder.write("b.mtl", "newmtl a\n");
+    let mut lines = vec![
+        ("contour a.obj --eye 0,0,1 --sphere -o b.obj", "b.mtl"),
+        ("contour a.obj --eye 0,0,1 --sphere -o x.svg -o ./b.obj", "b.mtl"),
+        ("contour a.obj --eye 0,0,1 --sphere -o a.obj", "a.obj"),
+        ("info a.obj --fragments -o b.obj", "b.mtl"),
+        ("info a.obj --fragments -o ./a.obj", "a.obj"),
+    ];
+    #[cfg(unix)]
+    {
+        for (target, link) in [("b.mtl", "c.mtl"), ("b.mtl", "d.svg"), ("a.obj", "e.mtl"), (".", "here")] {
+            std::os::unix::fs::symlink(target, folder.0.join(link)).expect("a link");
+        }
+        lines.extend([
+            ("contour a.obj --eye 0,0,1 --sphere -o c.obj", "b.mtl"),
+            ("contour a.obj --eye 0,0,1 --sphere -o d.svg", "b.mtl"),
+            ("info a.obj --fragments -o e.obj", "a.obj"),
+            ("info a.obj --fragments -o here/b.obj", "b.mtl"),
+        ]);
+    }
+    let before = (folder.files(), folder.read("a.obj"), folder.read("b.mtl"));
+    for (line, named) in lines {
+        let message = folder.run(line, 2);
+        assert!(message.contains("would overwrite") && message.contains(named), "{line}: {message}");
+        assert_eq!(message.lines().count(), 1, "{line}: {message}");
+    }
+    assert_eq!((folder.files(), folder.read("a.obj"), folder.read("b.mtl")), before);
+    folder.run("info a.obj --fragments -o f.obj", 0);
+}
+
+#[test]
+fn every_json_summary_carries_timing() {
+    let folder = Folder::new("timing");
+    for line in ["info box.obj", "scene room --polygons 100 -o x.obj", "contour box.obj --eye 1,2,3 --sphere"] {
+        let summary: Value = serde_json::from_str(&folder.run(&format!("{line} --json"), 0)).expect("JSON");
+        for key in ["load_s", "bsp_s", "views", "view_ms_mean", "view_ms_max", "threads"] {
+            assert!(summary["timing"][key].as_f64().expect("a number") >= 0.0, "{line}: {key}");
+        }
+    }
+    for epsilon in ["1e-300", "1e300", "0.5"] {
+        let text = folder.run(&format!("info box.obj --epsilon {epsilon}"), 0);
+        assert!(text.lines().any(|line| line.contains(&format!(" {epsilon}, "))), "{text}");
+    }
 }
 
 #[test]

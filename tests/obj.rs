@@ -137,6 +137,35 @@ fn odd_files_are_scenes_without_faces() {
 }
 
 #[test]
+fn no_name_of_a_material_is_default() {
+    let text = format!("mtllib m\n{SQUARE}f 1 2 3\nusemtl a\nf 1 2 3\nusemtl\nf 1 2 3\nusemtl default\nf 1 2 3\n");
+    let loaded = obj::parse(text.as_bytes(), "test.obj", |_| Ok(b"newmtl a\nnewmtl\nKd 1 0 0".to_vec())).unwrap();
+    assert_eq!(loaded.warnings, [""; 0]);
+    let materials = loaded.scene.materials();
+    assert_eq!(materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), ["default", "a"]);
+    assert_eq!(materials[0].diffuse.map(f64::to_bits), [1.0, 0.0, 0.0].map(f64::to_bits));
+    assert_eq!(parse(&format!("{SQUARE}usemtl\nf 1 2 3")).unwrap().warnings, [""; 0]);
+}
+
+#[test]
+fn the_files_that_were_read_are_known() {
+    let folder = std::env::temp_dir().join(format!("nusselt-files-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("x.obj");
+    fs::write(&path, format!("mtllib a.mtl b.mtl\nmtllib ./a.mtl\n{SQUARE}f 1 2 3\n")).unwrap();
+    fs::write(folder.join("a.mtl"), "newmtl a\n").unwrap();
+    assert_eq!(io::read_scene(&path).unwrap().files, [path.clone(), folder.join("a.mtl")]);
+    // A folder is no file to read, whatever it is called.
+    let error = io::read_scene(&{
+        fs::create_dir(folder.join("d.obj")).unwrap();
+        folder.join("d.obj")
+    })
+    .unwrap_err();
+    assert!(error.to_string().contains("not a regular file"), "{error}");
+    fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
 fn endings_decide_the_format() {
     let error = io::read_scene(Path::new("scene.xyz")).unwrap_err();
     assert_eq!(error.to_string(), "cannot read scene.xyz: its ending is not one of .obj; convert it or rename it");
@@ -225,7 +254,7 @@ fn real_files_load() {
     assert!(!paths.is_empty());
     for path in paths {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let Loaded { scene, warnings } = io::read_scene(&path).unwrap_or_else(|error| panic!("{error}"));
+        let Loaded { scene, warnings, .. } = io::read_scene(&path).unwrap_or_else(|error| panic!("{error}"));
         let count = |shape| scene.polygons().filter(|polygon| polygon.shape() == shape).count();
         let shapes = [Shape::Convex, Shape::Concave, Shape::NonPlanar, Shape::Degenerate].map(count);
         eprintln!(

@@ -65,7 +65,12 @@ fn check(scene: &Scene) {
     for polygon in scene.polygons() {
         assert_eq!(polygon.pieces().len() == 0, polygon.shape() == Shape::Degenerate);
         if polygon.shape() == Shape::Convex {
-            assert_eq!(polygon.pieces().len(), 1);
+            let corners = polygon.rings()[0].len();
+            assert_eq!(polygon.pieces().len() == 1, corners <= 64);
+            assert!(polygon.pieces().all(|piece| piece.vertices().len() <= 64));
+            // Each diagonal adds a piece and two corners.
+            let sum: usize = polygon.pieces().map(|piece| piece.vertices().len()).sum();
+            assert_eq!(sum, corners + 2 * (polygon.pieces().len() - 1));
         }
         for piece in polygon.pieces() {
             assert_eq!(piece.polygon(), polygon.id());
@@ -457,4 +462,74 @@ proptest! {
             check(&scene);
         }
     }
+}
+
+/// One convex polygon; its pieces are checked one by one.
+fn convex(points: &[[f64; 2]]) -> Scene {
+    let scene = flat(&[points.to_vec()]).expect("one sound polygon");
+    assert_eq!(scene.polygon(PolygonId(0)).shape(), Shape::Convex);
+    check(&scene);
+    let pieces = scene.piece_count();
+    // The sides, and a diagonal for every further piece.
+    assert_eq!(scene.edges().len(), points.len() + pieces - 1);
+    scene
+}
+
+#[test]
+fn convex_polygons_with_many_corners_are_cut() {
+    let parabola = |n: u32| -> Vec<[f64; 2]> { (0..n).map(f64::from).map(|x| [x, x * x]).collect() };
+    let pieces = |n: u32| convex(&parabola(n)).piece_count();
+    assert_eq!([3, 64, 65, 126, 127].map(pieces), [1, 1, 2, 2, 3]);
+    assert!(pieces(10_000) <= 2 * 10_000 / 62);
+    // Clockwise and in a slanted plane.
+    let slanted: Vec<_> = parabola(300).into_iter().rev().map(|[x, y]| [x, y, x + 2.0 * y]).collect();
+    let scene = polygon(&[slanted]).unwrap();
+    assert_eq!(scene.piece_count(), 8);
+    check(&scene);
+}
+
+#[test]
+fn cutting_leaves_no_piece_on_a_straight_side() {
+    // So many points on each side, the first corner included.
+    let square = |counts: [u32; 4]| -> Vec<[f64; 2]> {
+        let corners = [[0., 0.], [4096., 0.], [4096., 4096.], [0., 4096.]];
+        let side = |k: usize| {
+            let (a, b): ([f64; 2], [f64; 2]) = (corners[k], corners[(k + 1) % 4]);
+            let n = counts[k];
+            (0..n).map(move |i| {
+                let t = f64::from(i) / 4096.0;
+                [a[0] + (b[0] - a[0]) * t, a[1] + (b[1] - a[1]) * t]
+            })
+        };
+        (0..4).flat_map(side).collect()
+    };
+    for counts in [[1001, 1, 1, 1], [1, 1, 1, 63], [500, 1, 500, 1], [500, 500, 1, 1], [70, 90, 800, 3]] {
+        for shift in [0, 1, 7, 31] {
+            let mut ring = square(counts);
+            let n = ring.len();
+            ring.rotate_left(shift % n);
+            convex(&ring);
+        }
+    }
+    // Triangles: two long sides of equal length, then all three, and one only.
+    for [a, b, c] in [[200, 200, 1], [100, 100, 100], [65, 1, 1], [62, 1, 2], [1, 400, 399]] {
+        let corners = [[0., 0.], [1024., 0.], [0., 1024.]];
+        let mut ring = Vec::new();
+        for (k, n) in [a, b, c].into_iter().enumerate() {
+            let (p, q): ([f64; 2], [f64; 2]) = (corners[k], corners[(k + 1) % 3]);
+            ring.extend(
+                (0..n).map(|i| f64::from(i) / 1024.0).map(|t| [p[0] + (q[0] - p[0]) * t, p[1] + (q[1] - p[1]) * t]),
+            );
+        }
+        convex(&ring);
+    }
+}
+
+#[test]
+fn a_hundred_thousand_corners_take_no_time_to_speak_of() {
+    let points: Vec<_> = (0..100_000).map(f64::from).map(|x| [x, x * x]).collect();
+    let start = Instant::now();
+    let scene = flat(&[points]).unwrap();
+    assert!(start.elapsed() < Duration::from_secs(5), "{:?}", start.elapsed());
+    assert!(scene.pieces().all(|piece| piece.vertices().len() <= 64));
 }

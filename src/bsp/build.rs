@@ -31,7 +31,9 @@ pub enum BspError {
         epsilon: f64,
     },
     /// The scene falls into too many fragments.
-    #[error("the scene's polygons cut each other into more than {limit} fragments; simplify it, or allow more")]
+    #[error(
+        "the scene's polygons cut each other into more than {limit} fragments; simplify it (BspOptions::max_fragments is the limit)"
+    )]
     TooManyFragments {
         /// How many are allowed.
         limit: usize,

@@ -49,7 +49,9 @@ pub enum ViewError {
         depth: u32,
     },
     /// The view falls into too many cells.
-    #[error("what is seen falls into more than {limit} cells; simplify the scene, or allow more")]
+    #[error(
+        "what is seen falls into more than {limit} cells; simplify the scene (ViewOptions::max_cells is the limit)"
+    )]
     TooManyCells {
         /// How many are allowed.
         limit: usize,

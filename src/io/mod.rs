@@ -22,7 +22,9 @@ pub use svg::{SvgOptions, write_svg};
 pub use visible_obj::{fragment_groups, visible_groups};
 
 use crate::scene::Scene;
-use std::path::Path;
+use std::fs;
+use std::io::{Error, Result as IoResult};
+use std::path::{Path, PathBuf};
 
 /// A scene that was read, and what the reader made do with.
 #[derive(Clone, Debug)]
@@ -31,12 +33,22 @@ pub struct Loaded {
     pub scene: Scene,
     /// What a user should know: missing material files, faces without area, lines that were ignored.
     pub warnings: Vec<String>,
+    /// The files that were read: the scene first, then its material libraries. Results must not replace them.
+    pub files: Vec<PathBuf>,
 }
 
 type Reader = fn(&Path) -> Result<Loaded, ReadError>;
 
 /// The formats, by the ending of the file name.
 const READERS: &[(&str, Reader)] = &[("obj", obj::read)];
+
+/// The bytes of a regular file. A device or a pipe may never end.
+fn read_regular(path: &Path) -> IoResult<Vec<u8>> {
+    if !fs::metadata(path)?.is_file() {
+        return Err(Error::other("it is not a regular file; name one, or copy it into one"));
+    }
+    fs::read(path)
+}
 
 /// Reads a scene from a file; its ending decides the format, in upper or lower case.
 ///

@@ -1,4 +1,5 @@
 //! Materials in MTL files: `newmtl`, `Kd`, `Ks`, `Ns` and `Ke`; everything else is ignored.
+//! A material without a name is `default`, as for `usemtl`.
 
 use super::error::Faults;
 use super::lines::{is_blank, lines};
@@ -21,7 +22,8 @@ pub(super) fn parse(bytes: &[u8], file: &str, faults: &mut Faults, warnings: &mu
     for line in lines(bytes) {
         let (keyword, rest) = line.split();
         if keyword == "newmtl" {
-            definitions.push(Definition { material: Material::new(rest), line: line.number });
+            let name = if rest.is_empty() { "default" } else { rest };
+            definitions.push(Definition { material: Material::new(name), line: line.number });
             continue;
         }
         let Some(Definition { material, .. }) = definitions.last_mut() else { continue };

@@ -100,8 +100,8 @@ impl SceneBuilder {
     /// Checks everything and builds the scene.
     ///
     /// Vertices with exactly equal coordinates become one, those that no face names are left out.
-    /// Exactly planar and convex faces stay whole, others are triangulated on their own vertices; faces
-    /// without area stay as polygons without pieces. Expected time n log n in the size of the input,
+    /// Exactly planar and convex faces stay whole (those with more than 64 vertices are cut by diagonals),
+    /// others are triangulated on their own vertices; faces without area stay as polygons without pieces. Expected time n log n in the size of the input,
     /// n log^2 n for concave rings.
     ///
     /// # Errors

@@ -49,7 +49,8 @@ pub(super) fn facets(rings: &[Vec<VertexId>], vertices: &[DVec3]) -> Result<Face
     let axes = axes_by_size(triangle_normal(triangle));
     let axis = axes.into_iter().find(|&axis| !orientation(triangle, axis).is_zero()).unwrap_or(axes[0]);
     if solid.len() == 1 && is_convex(&outline, axis) {
-        return Ok(Facets { shape: Shape::Convex, outlines: vec![outer.clone()], plane: Some(corners) });
+        let outlines = cut_convex(outer, |corner| !orientation(corner.map(|v| vertices[v.index()]), axis).is_zero());
+        return Ok(Facets { shape: Shape::Convex, outlines, plane: Some(corners) });
     }
     let facets = Local::new(&solid).triangulate(|v| project(vertices[v.index()], axis))?;
     let Some(&[u, v, w]) = facets.first() else { return Ok(Facets::none()) };
@@ -57,6 +58,61 @@ pub(super) fn facets(rings: &[Vec<VertexId>], vertices: &[DVec3]) -> Result<Face
     let [a, b, c] = corners;
     let plane = if orientation(triangle, axis) == front { [a, b, c] } else { [a, c, b] };
     Ok(Facets { shape: Shape::Concave, outlines: facets.into_iter().map(Vec::from).collect(), plane: Some(plane) })
+}
+
+/// A convex polygon with more vertices than this is cut: a view would take time in the square of their
+/// number, for a convex piece is put into the contour tree side by side.
+const MOST_CORNERS: usize = 64;
+
+/// Cuts a weakly convex ring by diagonals into weakly convex rings with area of at most [`MOST_CORNERS`]
+/// vertices, by halving it as often as it takes: n log n. `turns` tells three consecutive vertices that make
+/// a turn from three on a line.
+fn cut_convex(ring: &[VertexId], turns: impl Fn([VertexId; 3]) -> bool) -> Vec<Vec<VertexId>> {
+    let n = ring.len();
+    if n <= MOST_CORNERS {
+        return vec![ring.to_vec()];
+    }
+    let turns = |k: usize| turns([ring[(k + n - 1) % n], ring[k], ring[(k + 1) % n]]);
+    let mut whole = vec![(0..n).map(|k| (ring[k], turns(k))).collect::<Vec<_>>()];
+    let mut parts = Vec::new();
+    while let Some(mut ring) = whole.pop() {
+        if ring.len() <= MOST_CORNERS {
+            parts.push(ring.into_iter().map(|(v, _)| v).collect());
+            continue;
+        }
+        let start = middle_of_longest_run(&ring);
+        ring.rotate_left(start);
+        let half = ring.len() / 2;
+        let mut rest = ring[half..].to_vec();
+        rest.push(ring[0]);
+        ring.truncate(half + 1);
+        for part in [&mut rest, &mut ring] {
+            debug_assert!(part[1..part.len() - 1].iter().any(|corner| corner.1), "a part without area");
+            // Between a diagonal and a side there is always a turn.
+            part[0].1 = true;
+            if let Some(last) = part.last_mut() {
+                last.1 = true;
+            }
+        }
+        whole.extend([rest, ring]);
+    }
+    parts
+}
+
+/// Where to halve a ring with at least three turns so that no half is a line: there is a turn strictly
+/// between the ends of both halves.
+///
+/// In the middle of the longest straight run: at least one more turn is on the other side, so the
+/// run is shorter than the ring, and from its middle both its ends are nearer than half the way around. Without such a run every vertex is
+/// a turn, and any will do.
+fn middle_of_longest_run(ring: &[(VertexId, bool)]) -> usize {
+    let n = ring.len();
+    let corners: Vec<usize> = (0..n).filter(|&k| ring[k].1).collect();
+    let steps = |k: usize| (corners[(k + 1) % corners.len()] + n - corners[k]) % n;
+    match (0..corners.len()).max_by_key(|&k| (steps(k), std::cmp::Reverse(k))) {
+        Some(k) if steps(k) > 1 => (corners[k] + steps(k).div_ceil(2)) % n,
+        _ => 0,
+    }
 }
 
 /// Triangulates a polygon that is not exactly planar.

@@ -1,8 +1,8 @@
 //! Scenes: planar polygons with names and materials, checked once and then immutable.
 //!
 //! A polygon of the input keeps its number for good. Inside it is one or more *pieces*: convex,
-//! exactly planar facets. A polygon that is exactly planar and convex is one piece; any other is
-//! triangulated; a polygon without area has none.
+//! exactly planar facets. A polygon that is exactly planar and convex is one piece, or a few
+//! if it has more than 64 vertices; any other is triangulated; a polygon without area has none.
 
 mod assemble;
 mod builder;
@@ -128,7 +128,8 @@ impl Side {
 /// Why a polygon is not one whole piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
-    /// Exactly planar and convex (exactly collinear vertices allowed): one piece.
+    /// Exactly planar and convex (exactly collinear vertices allowed): one piece, or with more than 64
+    /// vertices, pieces of at most 64, cut by diagonals, all in one plane.
     Convex,
     /// Exactly planar, but concave or with holes: triangulated.
     Concave,

@@ -1,7 +1,9 @@
 //! What ends the program, and how it is said.
 
 use clap::error::ErrorKind;
+use std::fmt::Display;
 use std::io::Write;
+use std::path::Path;
 
 /// Why the program did not do what it was asked for.
 #[derive(Debug)]
@@ -10,6 +12,13 @@ pub(crate) enum Failure {
     Usage(String),
     /// The input or the work failed: exit code 1.
     Work(String),
+}
+
+impl Failure {
+    /// The work on a file failed.
+    pub(crate) fn about(file: &Path, error: &impl Display) -> Self {
+        Self::Work(format!("{}: {error}", file.display()))
+    }
 }
 
 /// Writes the one message to stderr.
@@ -35,4 +44,24 @@ pub(crate) fn of_clap(error: &clap::Error) -> Result<(), Failure> {
     let tip = text.lines().map(str::trim).find_map(|line| line.strip_prefix("tip: "));
     let tip = tip.map_or_else(String::new, |tip| format!("; {tip}"));
     Err(Failure::Usage(format!("{message}{tip} (--help explains)")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nusselt::bsp::BspError;
+    use nusselt::contour::ViewError;
+
+    #[test]
+    fn limits_are_failures_of_the_work_that_name_the_scene() {
+        let file = Path::new("rooms/a.obj");
+        let failures = [
+            Failure::about(file, &BspError::TooManyFragments { limit: 7 }),
+            Failure::about(file, &ViewError::TooManyCells { limit: 7 }),
+        ];
+        for failure in failures {
+            let Failure::Work(message) = failure else { panic!("not exit code 1: {failure:?}") };
+            assert!(message.starts_with("rooms/a.obj: ") && message.contains("more than 7"), "{message}");
+        }
+    }
 }

@@ -3,8 +3,8 @@
 use crate::args::{Common, Order};
 use crate::failure::Failure;
 use crate::input::{build, load};
-use crate::output::{is_same_file, print, print_json, write_obj};
-use crate::summary::{Lines, Timing, vector};
+use crate::output::{print, print_json, write_obj};
+use crate::summary::{Lines, Timing, number, vector};
 use nusselt::bsp::SceneBsp;
 use nusselt::io::fragment_groups;
 use nusselt::scene::{MeshReport, PolygonId, Scene, Shape};
@@ -46,13 +46,9 @@ impl Info {
             (None, true) => return Err(Failure::Usage("--fragments takes -o FILE.obj: say where to write".to_owned())),
             (output, _) => output.as_deref(),
         };
-        if output.is_some_and(|output| is_same_file(output, &self.scene)) {
-            let message = format!("-o {} would overwrite the scene; name another file", self.scene.display());
-            return Err(Failure::Usage(message));
-        }
-        let (scene, load_s) = load(&self.scene, common)?;
+        let (scene, load_s) = load(&self.scene, output.into_iter(), common)?;
         let report = scene.report();
-        let (bsp, bsp_s) = build(&scene, &self.order)?;
+        let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
         if let Some(output) = output {
             write_obj(output, &fragment_groups(&bsp), &scene)?;
         }
@@ -147,7 +143,7 @@ fn in_words(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing: Timing) 
         format!("{} nodes, depth {}, {} splits, {} fragments", stats.nodes, stats.depth, stats.splits, stats.fragments),
     );
     if bsp.epsilon() > 0.0 {
-        lines.add("epsilon", format!("{}, {} slivers left uncut", bsp.epsilon(), stats.uncut_slivers));
+        lines.add("epsilon", format!("{}, {} slivers left uncut", number(bsp.epsilon()), stats.uncut_slivers));
     }
     lines.add("time", format!("load {:.3} s, BSP {:.3} s", timing.load_s, timing.bsp_s));
     lines.0

@@ -55,6 +55,27 @@ pub(crate) fn write_obj(path: &Path, groups: &[obj::Group], scene: &Scene) -> Re
     write_file(path, |out| obj::write(out, groups, Some(&name)))
 }
 
+/// The files that are written for an output: itself and, for OBJ, the material library beside it.
+pub(crate) fn written(output: &Path) -> Vec<PathBuf> {
+    let is_obj = output.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("obj"));
+    let library = is_obj.then(|| library_of(output).0);
+    [Some(output.to_owned()), library].into_iter().flatten().collect()
+}
+
+/// Refuses outputs that would replace one of the files that are read.
+pub(crate) fn keep<'a>(files: &[PathBuf], outputs: impl Iterator<Item = &'a Path>) -> Result<(), Failure> {
+    for output in outputs {
+        for target in written(output) {
+            if let Some(file) = files.iter().find(|file| is_same_file(file, &target)) {
+                let [output, file] = [output, file].map(Path::display);
+                let what = format!("-o {output} would overwrite {file}, which is read; name another file");
+                return Err(Failure::Usage(what));
+            }
+        }
+    }
+    Ok(())
+}
+
 /// True if both names lead to one file, as far as that can be told before it is written.
 pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
     let whole = |path: &Path| {

@@ -3,9 +3,11 @@
 use crate::args::Common;
 use crate::failure::Failure;
 use crate::output::{library_of, print, print_json, write_file};
+use crate::summary::Timing;
 use nusselt::samples::{Kind, Mesh, cornell_box, generate};
 use serde_json::json;
 use std::path::PathBuf;
+use std::time::Instant;
 
 const EXAMPLE: &str = "\
 Example: a closed room of 2000 polygons, as room.obj and room.mtl
@@ -48,7 +50,9 @@ fn parse_obj(text: &str) -> Result<PathBuf, String> {
 
 impl Scene {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
+        let start = Instant::now();
         let (mesh, name) = self.make()?;
+        let timing = Timing::new(start.elapsed().as_secs_f64(), 0.0, &[]);
         let (library, library_name) = library_of(&self.output);
         // First, so that the scene never refers to what is not there.
         write_file(&library, |out| mesh.write_mtl(out))?;
@@ -59,6 +63,7 @@ impl Scene {
             return print_json(&json!({
                 "schema": "nusselt.scene/1", "kind": name, "seed": self.seed, "polygons": faces,
                 "vertices": mesh.vertices().len(), "objects": objects, "materials": materials, "files": files,
+                "timing": timing,
             }));
         }
         if common.quiet {

@@ -29,7 +29,7 @@ pub(crate) fn vector(v: glam::DVec3) -> String {
 }
 
 /// The shortest number that reads as the same, with an exponent where it would be long otherwise.
-fn number(x: f64) -> String {
+pub(crate) fn number(x: f64) -> String {
     if x == 0.0 || (1e-5..1e12).contains(&x.abs()) { format!("{}", x + 0.0) } else { format!("{x:e}") }
 }
 

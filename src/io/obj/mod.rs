@@ -2,7 +2,8 @@
 //!
 //! Read are `v`, `f` (any number of vertices, in the forms `v`, `v/vt`, `v//vn` and `v/vt/vn`, negative
 //! indices too), `o`, `g`, `usemtl` and `mtllib`. Points, lines, texture coordinates and normals
-//! are ignored: the sides of a face follow from the order of its vertices.
+//! are ignored: the sides of a face follow from the order of its vertices. An object or a material
+//! without a name is `default`.
 
 mod read;
 mod write;

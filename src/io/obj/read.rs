@@ -4,7 +4,7 @@ use super::super::error::Faults;
 use super::super::lines::{Line, is_blank, lines};
 use super::super::mtl::{self, Definition};
 use super::super::number::{self, shown};
-use super::super::{Loaded, ReadError};
+use super::super::{Loaded, ReadError, read_regular};
 use crate::scene::{FaceSpec, Material, MaterialId, ObjectId, Scene, SceneBuilder, SceneProblem, Shape};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
@@ -17,25 +17,28 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// If the file cannot be read or used. A material file that is missing is a warning.
 pub fn read(path: &Path) -> Result<Loaded, ReadError> {
-    let bytes = fs::read(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
+    let bytes = read_regular(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut known: HashSet<PathBuf> = HashSet::new();
-    parse(&bytes, &path.to_string_lossy(), |name| {
+    let mut files = vec![path.to_owned()];
+    let mut loaded = parse(&bytes, &path.to_string_lossy(), |name| {
         let path = folder.join(name);
         let path = if path.exists() { path } else { folder.join(name.replace('\\', "/")) };
-        // Not from devices, which may never end; and each file once, whatever it is called.
-        if !fs::metadata(&path)?.is_file() {
-            return Err(io::Error::other("it is not a regular file"));
-        }
-        if !known.insert(fs::canonicalize(&path)?) {
+        // Each file once, whatever it is called.
+        if known.contains(&fs::canonicalize(&path)?) {
             return Ok(Vec::new());
         }
-        fs::read(&path)
-    })
+        let bytes = read_regular(&path)?;
+        known.insert(fs::canonicalize(&path)?);
+        files.push(path);
+        Ok(bytes)
+    })?;
+    loaded.files = files;
+    Ok(loaded)
 }
 
 /// Reads the bytes of an OBJ file. `name` is what messages call it; `load` gives the bytes of the material
-/// files it names. Takes any bytes.
+/// files it names. Takes any bytes. Of what `load` reads nothing is noted in [`Loaded::files`].
 ///
 /// ```
 /// use nusselt::io::obj;
@@ -138,7 +141,8 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
             "f" => self.read_face(line.number, rest),
             "o" => self.name_object(rest, true),
             "g" => self.name_object(rest, false),
-            "usemtl" => self.material = Some(self.use_material(rest)),
+            // As with `o` and `g`: no name is the default.
+            "usemtl" => self.material = Some(self.use_material(if rest.is_empty() { "default" } else { rest })),
             "mtllib" => self.read_libraries(line.number, rest),
             _ if WITHOUT_EFFECT.contains(&keyword) => {}
             _ => {
@@ -296,7 +300,7 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
                 self.name
             ));
         }
-        Ok(Loaded { scene, warnings: self.warnings })
+        Ok(Loaded { scene, warnings: self.warnings, files: Vec::new() })
     }
 
     /// The file and line of a problem.

@@ -101,12 +101,14 @@ fn parse_projection(text: &str) -> Result<Projection, String> {
 impl Contour {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         let projection = self.check()?;
-        let (scene, load_s) = load(&self.scene, common)?;
+        let outputs = self.output.iter().map(|output| output.path.as_path());
+        let (scene, load_s) = load(&self.scene, outputs, common)?;
         let (viewpoint, domain) = self.stand(&scene)?;
-        let (bsp, bsp_s) = build(&scene, &self.order)?;
+        let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
         let start = Instant::now();
         let options = ViewOptions { quadtree_depth: self.quadtree_depth, ..ViewOptions::default() };
-        let image = bsp.view_with(&viewpoint, &domain, &options).map_err(|e| Failure::Work(e.to_string()))?;
+        let image =
+            bsp.view_with(&viewpoint, &domain, &options).map_err(|error| Failure::about(&self.scene, &error))?;
         let view_ms = start.elapsed().as_secs_f64() * 1e3;
         let timing = Timing::new(load_s, bsp_s, &[view_ms]);
         let summary = ContourSummary::new(&image);
@@ -131,9 +133,6 @@ impl Contour {
         let usage = |message: String| Err(Failure::Usage(message));
         for (k, output) in self.output.iter().enumerate() {
             let path = output.path.display();
-            if is_same_file(&output.path, &self.scene) {
-                return usage(format!("-o {path} would overwrite the scene; name another file"));
-            }
             if self.output[..k].iter().any(|other| is_same_file(&other.path, &output.path)) {
                 return usage(format!("-o {path} is given twice; name each file once"));
             }

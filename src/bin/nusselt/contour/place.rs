@@ -18,7 +18,7 @@ impl Contour {
         match surface {
             Some((piece, side)) => {
                 let viewpoint = Viewpoint::on_piece(scene, piece, side, self.eye);
-                Ok((viewpoint.map_err(|error| self.failure(&error))?, Domain::Above))
+                Ok((viewpoint.map_err(|error| Failure::about(&self.scene, &error))?, Domain::Above))
             }
             None => Ok((Viewpoint::free(self.eye), Domain::Hemisphere(normal))),
         }
@@ -27,11 +27,7 @@ impl Contour {
     fn on_polygon(&self, scene: &Scene, polygon: PolygonId, side: Side) -> Result<Viewpoint, Failure> {
         Viewpoint::on_surface(scene, polygon, side, self.eye).map_err(|error| match error {
             SurfaceError::UnknownPolygon { .. } => Failure::Usage(format!("--on: {error}")),
-            _ => self.failure(&error),
+            _ => Failure::about(&self.scene, &error),
         })
-    }
-
-    fn failure(&self, error: &SurfaceError) -> Failure {
-        Failure::Work(format!("{}: {error}", self.scene.display()))
     }
 }
