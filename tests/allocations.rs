@@ -93,7 +93,7 @@ fn a_warm_kernel_allocates_nothing_up_to_the_last_stage() {
         let info = allocation_counter::measure(|| ask(&mut kernel, &setting, &directions, &splitters));
         let stats = kernel.stats();
         assert_eq!(info.count_total, 0, "{bits} bits: {stats:?}");
-        assert!(stats.filter > 0 && stats.identity > 0 && stats.fixed > 100, "all stages were reached: {stats:?}");
+        assert!(stats.filter > 0 && stats.identity > 0 && stats.fixed > 50, "all stages were reached: {stats:?}");
         assert_eq!(stats.arbitrary, PredicateStats::default().arbitrary, "{bits} bits: {stats:?}");
     }
 }

@@ -2,7 +2,7 @@
 //! contour tree: on which side of a great circle a direction lies.
 
 use crate::bsp::{LineDef, LineId, PointId, Skeleton, Tree};
-use crate::exact::{self, Approx3, Arena, Constructor, Frame, Num3, PredicateStats, Sign};
+use crate::exact::{self, Approx3, Arena, Constructor, Frame, Kept3, Num3, PredicateStats, Sign};
 use crate::scene::{PlaneId, SupportingPlane, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -65,8 +65,8 @@ pub(crate) struct Directions {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ExactCache {
     arena: Arena,
-    normals: FxHashMap<CircleId, Num3>,
-    points: FxHashMap<PointId, Num3>,
+    normals: FxHashMap<CircleId, Kept3>,
+    points: FxHashMap<PointId, Kept3>,
     /// What decided the sides asked for. Calls are counted where many are made at once, so `filter` is
     /// known only at the end: see [`ExactCache::predicates`].
     undecided: PredicateStats,
@@ -117,7 +117,7 @@ impl Directions {
         let id = CircleId(self.circles.len() as u32);
         self.circles.push(def);
         let refined = normal.is_poor().then(|| self.exact_normal(skeleton, id, cache));
-        self.normals.push(refined.map_or(normal, |exact| cache.rounded(exact)));
+        self.normals.push(refined.map_or(normal, |exact| cache.rounded(exact.vector)));
         id
     }
 
@@ -147,10 +147,10 @@ impl Directions {
         let approx = match definition {
             DirectionDef::Point(point) => {
                 let exact = self.exact_point(skeleton, point, cache);
-                cache.rounded(exact)
+                cache.rounded(exact.vector)
             }
             DirectionDef::Crossing { circles, reversed } => {
-                let [m, n] = circles.map(|c| self.exact_normal(skeleton, c, cache));
+                let [m, n] = circles.map(|c| self.exact_normal(skeleton, c, cache).vector);
                 let mark = cache.arena.mark();
                 let exact = if reversed { cache.arena.cross(n, m) } else { cache.arena.cross(m, n) };
                 let approx = cache.rounded(exact);
@@ -234,16 +234,16 @@ impl Directions {
             DirectionDef::Crossing { circles, reversed } => {
                 let [m, n] = circles.map(|circle| self.exact_normal(skeleton, circle, cache));
                 let [m, n] = if reversed { [n, m] } else { [m, n] };
-                cache.decide(|arena| arena.det_sign(normal, m, n))
+                cache.decide(|arena| arena.kept_det_sign(&normal, &m, &n))
             }
             DirectionDef::Point(point) => {
                 let direction = self.exact_point(skeleton, point, cache);
-                cache.decide(|arena| arena.dot_sign(normal, direction))
+                cache.decide(|arena| arena.kept_dot_sign(&normal, &direction))
             }
         }
     }
 
-    fn exact_normal(&self, skeleton: &Skeleton, c: CircleId, cache: &mut ExactCache) -> Num3 {
+    fn exact_normal(&self, skeleton: &Skeleton, c: CircleId, cache: &mut ExactCache) -> Kept3 {
         if let Some(&known) = cache.normals.get(&c) {
             return known;
         }
@@ -260,7 +260,7 @@ impl Directions {
         normal
     }
 
-    fn exact_point(&self, skeleton: &Skeleton, point: PointId, cache: &mut ExactCache) -> Num3 {
+    fn exact_point(&self, skeleton: &Skeleton, point: PointId, cache: &mut ExactCache) -> Kept3 {
         if let Some(&known) = cache.points.get(&point) {
             return known;
         }
@@ -281,7 +281,7 @@ impl Directions {
         let mark = cache.arena.mark();
         let mut exact = Constructor { frame: &self.frame, arena: &mut cache.arena };
         let direction = exact.direction(&exact::Direction::Given(d));
-        let sign = cache.arena.dot_sign(normal, direction);
+        let sign = cache.arena.dot_sign(normal.vector, direction);
         cache.arena.release(mark);
         sign
     }

@@ -41,10 +41,22 @@ impl Num {
 /// A vector of integers.
 pub(crate) type Num3 = [Num; 3];
 
+/// A vector that stays, with a copy in digits where it fits.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kept3 {
+    pub(crate) vector: Num3,
+    /// Where the digits start in [`Arena::digits`], one component after the other.
+    start: u32,
+    /// Digits a component; more than [`fixed::MOST_DIGITS`] if there is no copy.
+    width: u32,
+}
+
 /// The buffer.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Arena {
     limbs: Vec<u64>,
+    /// The digits of vectors that stay.
+    digits: Vec<i64>,
     /// How many signs were too wide for fixed widths.
     arbitrary: u64,
 }
@@ -203,69 +215,97 @@ impl Arena {
 
     /// The sign of `a . b`; leaves nothing behind.
     pub(crate) fn dot_sign(&mut self, a: Num3, b: Num3) -> Sign {
+        match self.width(a).max(self.width(b)) {
+            0..=2 => fixed::dot_sign::<3, 2, 3>(&self.fixed(a), &self.fixed(b)),
+            3..=4 => fixed::dot_sign::<3, 4, 7>(&self.fixed(a), &self.fixed(b)),
+            5..=8 => fixed::dot_sign::<3, 8, 15>(&self.fixed(a), &self.fixed(b)),
+            9..=fixed::MOST_DIGITS => fixed::dot_sign::<3, 12, 23>(&self.fixed(a), &self.fixed(b)),
+            _ => self.wide_dot_sign(a, b),
+        }
+    }
+
+    /// The same for vectors that were kept.
+    pub(crate) fn kept_dot_sign(&mut self, a: &Kept3, b: &Kept3) -> Sign {
         macro_rules! fixed {
-            ($w:literal, $sum:literal) => {
-                fixed::dot_sign::<3, $w, $sum>(&self.fixed(a), &self.fixed(b))
+            ($w:literal) => {
+                fixed::dot_sign::<3, $w, { 2 * $w - 1 }>(&self.digits(a), &self.digits(b))
             };
         }
-        match self.width(a).max(self.width(b)) {
-            0..=1 => fixed!(1, 3),
-            2 => fixed!(2, 5),
-            3 => fixed!(3, 7),
-            4 => fixed!(4, 9),
-            5..=6 => fixed!(6, 13),
-            7..=8 => fixed!(8, 17),
-            9..=fixed::MOST_LIMBS => fixed!(12, 25),
-            _ => {
-                self.arbitrary += 1;
-                let mark = self.mark();
-                let sign = self.dot(a, b).sign();
-                self.release(mark);
-                sign
-            }
+        match a.width.max(b.width) as usize {
+            0..=1 => fixed!(1),
+            2 => fixed!(2),
+            3 => fixed!(3),
+            4 => fixed!(4),
+            5..=6 => fixed!(6),
+            7..=8 => fixed!(8),
+            9..=fixed::MOST_DIGITS => fixed!(12),
+            _ => self.wide_dot_sign(a.vector, b.vector),
         }
+    }
+
+    #[cold]
+    fn wide_dot_sign(&mut self, a: Num3, b: Num3) -> Sign {
+        self.arbitrary += 1;
+        let mark = self.mark();
+        let sign = self.dot(a, b).sign();
+        self.release(mark);
+        sign
     }
 
     /// The sign of `a . (b x c)`; leaves nothing behind.
     pub(crate) fn det_sign(&mut self, a: Num3, b: Num3, c: Num3) -> Sign {
         macro_rules! fixed {
-            ($w:literal, $cross:literal, $sum:literal) => {
-                fixed::det_sign::<$w, $cross, $sum>(&self.fixed(a), &self.fixed(b), &self.fixed(c))
+            ($w:literal) => {
+                fixed::det_sign::<$w, { 2 * $w }, { 3 * $w - 1 }>(&self.fixed(a), &self.fixed(b), &self.fixed(c))
             };
         }
         match self.width(a).max(self.width(b)).max(self.width(c)) {
-            0..=1 => fixed!(1, 2, 4),
-            2 => fixed!(2, 4, 7),
-            3 => fixed!(3, 6, 10),
-            4 => fixed!(4, 8, 13),
-            5..=6 => fixed!(6, 12, 19),
-            7..=8 => fixed!(8, 16, 25),
-            9..=fixed::MOST_LIMBS => fixed!(12, 24, 37),
-            _ => {
-                self.arbitrary += 1;
-                let mark = self.mark();
-                let cross = self.cross(b, c);
-                let sign = self.dot(a, cross).sign();
-                self.release(mark);
-                sign
-            }
+            0..=2 => fixed!(2),
+            3..=4 => fixed!(4),
+            5..=8 => fixed!(8),
+            9..=fixed::MOST_DIGITS => fixed!(12),
+            _ => self.wide_det_sign(a, b, c),
         }
+    }
+
+    /// The same for vectors that were kept.
+    pub(crate) fn kept_det_sign(&mut self, a: &Kept3, b: &Kept3, c: &Kept3) -> Sign {
+        macro_rules! fixed {
+            ($w:literal) => {
+                fixed::det_sign::<$w, { 2 * $w }, { 3 * $w - 1 }>(&self.digits(a), &self.digits(b), &self.digits(c))
+            };
+        }
+        match a.width.max(b.width).max(c.width) as usize {
+            0..=1 => fixed!(1),
+            2 => fixed!(2),
+            3 => fixed!(3),
+            4 => fixed!(4),
+            5 => fixed!(5),
+            6 => fixed!(6),
+            7 => fixed!(7),
+            8 => fixed!(8),
+            9..=fixed::MOST_DIGITS => fixed!(12),
+            _ => self.wide_det_sign(a.vector, b.vector, c.vector),
+        }
+    }
+
+    #[cold]
+    fn wide_det_sign(&mut self, a: Num3, b: Num3, c: Num3) -> Sign {
+        self.arbitrary += 1;
+        let mark = self.mark();
+        let cross = self.cross(b, c);
+        let sign = self.dot(a, cross).sign();
+        self.release(mark);
+        sign
     }
 
     /// The sign of `normal . x + height w`; leaves nothing behind.
     pub(crate) fn height_sign(&mut self, normal: Num3, height: Num, x: Num3, w: Num) -> Sign {
         let (plane, point) = ([normal[0], normal[1], normal[2], height], [x[0], x[1], x[2], w]);
-        macro_rules! fixed {
-            ($w:literal, $sum:literal) => {
-                fixed::dot_sign::<4, $w, $sum>(&self.fixed(plane), &self.fixed(point))
-            };
-        }
         match self.width(plane).max(self.width(point)) {
-            0..=2 => fixed!(2, 5),
-            3..=4 => fixed!(4, 9),
-            5..=6 => fixed!(6, 13),
-            7..=8 => fixed!(8, 17),
-            9..=fixed::MOST_LIMBS => fixed!(12, 25),
+            0..=4 => fixed::dot_sign::<4, 4, 7>(&self.fixed(plane), &self.fixed(point)),
+            5..=8 => fixed::dot_sign::<4, 8, 15>(&self.fixed(plane), &self.fixed(point)),
+            9..=fixed::MOST_DIGITS => fixed::dot_sign::<4, 12, 23>(&self.fixed(plane), &self.fixed(point)),
             _ => {
                 self.arbitrary += 1;
                 let mark = self.mark();
@@ -281,17 +321,10 @@ impl Arena {
     /// Positive if two vectors other than 0 point the same way, negative if they point opposite ways,
     /// zero if they are not parallel; leaves nothing behind.
     pub(crate) fn parallel(&mut self, a: Num3, b: Num3) -> Sign {
-        macro_rules! fixed {
-            ($w:literal, $cross:literal, $sum:literal) => {
-                fixed::parallel::<$w, $cross, $sum>(&self.fixed(a), &self.fixed(b))
-            };
-        }
         match self.width(a).max(self.width(b)) {
-            0..=2 => fixed!(2, 4, 5),
-            3..=4 => fixed!(4, 8, 9),
-            5..=6 => fixed!(6, 12, 13),
-            7..=8 => fixed!(8, 16, 17),
-            9..=fixed::MOST_LIMBS => fixed!(12, 24, 25),
+            0..=4 => fixed::parallel::<4, 7>(&self.fixed(a), &self.fixed(b)),
+            5..=8 => fixed::parallel::<8, 15>(&self.fixed(a), &self.fixed(b)),
+            9..=fixed::MOST_DIGITS => fixed::parallel::<12, 23>(&self.fixed(a), &self.fixed(b)),
             _ => {
                 self.arbitrary += 1;
                 let mark = self.mark();
@@ -303,32 +336,60 @@ impl Arena {
         }
     }
 
-    /// How many limbs hold the components with a sign bit.
+    /// How many digits hold each of the components.
     fn width<const N: usize>(&self, v: [Num; N]) -> usize {
-        let limbs = |n: Num| match self.limbs[Self::range(n)].last() {
+        let bits = |n: Num| match self.limbs[Self::range(n)].last() {
             None => 0,
-            Some(top) => n.len as usize + (top >> 63) as usize,
+            Some(top) => n.len * 64 - top.leading_zeros(),
         };
-        v.into_iter().map(limbs).fold(0, usize::max)
+        v.into_iter().map(bits).fold(0, u32::max).div_ceil(fixed::DIGIT) as usize
     }
 
-    /// The vector in two's complement; `W` must be at least its width.
-    fn fixed<const N: usize, const W: usize>(&self, v: [Num; N]) -> [[u64; W]; N] {
-        v.map(|n| {
-            let mut limbs = [0; W];
-            limbs[..n.len as usize].copy_from_slice(&self.limbs[Self::range(n)]);
-            let mask = if n.negative { u64::MAX } else { 0 };
-            let mut carry = n.negative;
-            for limb in &mut limbs {
-                (*limb, carry) = (*limb ^ mask).overflowing_add(u64::from(carry));
+    /// The digit number `k` of a number.
+    fn digit(&self, n: Num, k: usize) -> i64 {
+        let limbs = &self.limbs[Self::range(n)];
+        let (limb, shift) = (k * fixed::DIGIT as usize / 64, k as u32 * fixed::DIGIT % 64);
+        let limb_at = |i: usize| u128::from(limbs.get(i).copied().unwrap_or(0));
+        let pair = limb_at(limb) | limb_at(limb + 1) << 64;
+        let digit = (pair >> shift) as i64 & ((1 << fixed::DIGIT) - 1);
+        if n.negative { -digit } else { digit }
+    }
+
+    /// The vector in digits; `W` must be at least its width.
+    fn fixed<const N: usize, const W: usize>(&self, v: [Num; N]) -> [[i64; W]; N] {
+        v.map(|n| std::array::from_fn(|k| self.digit(n, k)))
+    }
+
+    /// The copy in digits of a vector that was kept; `W` must be at least its width.
+    #[inline]
+    fn digits<const W: usize>(&self, v: &Kept3) -> fixed::Fixed3<W> {
+        let (start, width) = (v.start as usize, v.width as usize);
+        let mut digits = [[0; W]; 3];
+        let stored = &self.digits[start..start + 3 * width];
+        if width == W {
+            // Of a length known here, so that it is copied without a call.
+            for (component, stored) in digits.iter_mut().zip(stored.chunks_exact(W)) {
+                component.copy_from_slice(stored);
             }
-            limbs
-        })
+        } else if width > 0 {
+            for (component, stored) in digits.iter_mut().zip(stored.chunks_exact(width)) {
+                for (digit, stored) in component.iter_mut().zip(stored) {
+                    *digit = *stored;
+                }
+            }
+        }
+        digits
+    }
+
+    /// Forgets everything, kept or not. The memory is kept for what comes next.
+    pub(crate) fn clear(&mut self) {
+        self.limbs.clear();
+        self.digits.clear();
     }
 
     /// Moves a vector made since `mark` down to the mark and releases all else made since: what is
     /// kept stays, what it was made from goes.
-    pub(crate) fn keep3(&mut self, mark: usize, v: Num3) -> Num3 {
+    pub(crate) fn keep3(&mut self, mark: usize, v: Num3) -> Kept3 {
         let tail = self.limbs.len();
         let mut kept = v;
         let mut place = mark;
@@ -339,7 +400,18 @@ impl Arena {
         }
         self.limbs.copy_within(tail.., mark);
         self.limbs.truncate(place);
-        kept
+        let start = self.digits.len();
+        debug_assert!(u32::try_from(start).is_ok(), "vectors are forgotten long before 32 GiB");
+        let width = self.width(kept);
+        if width <= fixed::MOST_DIGITS {
+            for n in kept {
+                for k in 0..width {
+                    let digit = self.digit(n, k);
+                    self.digits.push(digit);
+                }
+            }
+        }
+        Kept3 { vector: kept, start: start as u32, width: width as u32 }
     }
 
     /// The vector scaled by a power of two to a largest component in `[0.5, 1]`, each component
@@ -427,6 +499,20 @@ mod tests {
                         let cross = arena.cross(v, w);
                         let exact = arena.dot(u, cross).sign();
                         prop_assert_eq!(arena.det_sign(u, v, w), exact);
+                    }
+                }
+            }
+            let kept = vectors.map(|v| {
+                let mark = arena.mark();
+                let one = arena.integer(1);
+                let copy = arena.scale3(one, v);
+                (v, arena.keep3(mark, copy))
+            });
+            for (v, kept_v) in &kept {
+                for (w, kept_w) in &kept {
+                    prop_assert_eq!(arena.kept_dot_sign(kept_v, kept_w), arena.dot_sign(*v, *w));
+                    for (u, kept_u) in &kept {
+                        prop_assert_eq!(arena.kept_det_sign(kept_u, kept_v, kept_w), arena.det_sign(*u, *v, *w));
                     }
                 }
             }

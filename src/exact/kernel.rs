@@ -7,7 +7,7 @@
 
 use super::approx::{Approx3, U};
 use super::approximate::{ApproxPlane, ApproxPoint};
-use super::arena::{Arena, Num3};
+use super::arena::{Arena, Kept3, Num3};
 use super::construct::Constructor;
 use super::definition::{Direction, Plane, Point, Splitter};
 use super::frame::{BitRange, Frame};
@@ -78,7 +78,7 @@ pub struct DirectionId(u32);
 struct Known<T> {
     definition: T,
     approx: Approx3,
-    exact: Option<Num3>,
+    exact: Option<Kept3>,
 }
 
 impl Kernel {
@@ -136,7 +136,7 @@ impl Kernel {
     pub fn clear(&mut self) {
         self.splitters.clear();
         self.directions.clear();
-        self.arena.release(0);
+        self.arena.clear();
     }
 
     fn approx_splitter(&mut self, definition: &Splitter) -> Approx3 {
@@ -210,8 +210,14 @@ impl Kernel {
             self.stats.identity += 1;
             return Sign::Zero;
         }
-        let (normal, direction) = (self.exact_splitter(splitter), self.exact_direction(direction));
-        self.count(|arena| arena.dot_sign(normal, direction))
+        self.make_splitter(splitter);
+        self.make_direction(direction);
+        let (d, s) = (&self.directions[direction.0 as usize].exact, &self.splitters[splitter.0 as usize].exact);
+        let (Some(direction), Some(normal)) = (d, s) else { unreachable!("both were made") };
+        let arbitrary = self.arena.arbitrary_signs();
+        let sign = self.arena.kept_dot_sign(normal, direction);
+        self.count_stage(arbitrary);
+        sign
     }
 
     /// The orientation of three splitters: the sign of `n_1 . (n_2 x n_3)`.
@@ -256,30 +262,35 @@ impl Kernel {
             self.stats.identity += 1;
             return Sign::Zero;
         }
-        let [a, b, c] = splitters.map(|s| self.exact_splitter(s));
-        self.count(|arena| arena.det_sign(a, b, c))
+        splitters.into_iter().for_each(|s| self.make_splitter(s));
+        // By reference: copies of what was just written wait for each other.
+        let [Some(a), Some(b), Some(c)] = splitters.map(|s| self.splitters[s.0 as usize].exact.as_ref()) else {
+            unreachable!("all were made")
+        };
+        let arbitrary = self.arena.arbitrary_signs();
+        let sign = self.arena.kept_det_sign(a, b, c);
+        self.count_stage(arbitrary);
+        sign
     }
 
-    /// The integers of a splitter, made at the first call. They may come from different grids: a vector
+    /// Makes the integers of a splitter, at the first call. They may come from different grids: a vector
     /// stands for its positive multiples too.
-    fn exact_splitter(&mut self, id: SplitterId) -> Num3 {
-        let known = self.splitters[id.0 as usize];
-        known.exact.unwrap_or_else(|| {
-            let range = range_of_splitter(self.range, &known.definition);
-            let exact = self.keep(range, |exact| exact.splitter(&known.definition));
-            self.splitters[id.0 as usize].exact = Some(exact);
-            exact
-        })
+    #[inline]
+    fn make_splitter(&mut self, id: SplitterId) {
+        if self.splitters[id.0 as usize].exact.is_none() {
+            let definition = self.splitters[id.0 as usize].definition;
+            let range = range_of_splitter(self.range, &definition);
+            self.splitters[id.0 as usize].exact = Some(self.keep(range, |exact| exact.splitter(&definition)));
+        }
     }
 
-    fn exact_direction(&mut self, id: DirectionId) -> Num3 {
-        let known = self.directions[id.0 as usize];
-        known.exact.unwrap_or_else(|| {
-            let range = range_of_direction(self.range, &known.definition);
-            let exact = self.keep(range, |exact| exact.direction(&known.definition));
-            self.directions[id.0 as usize].exact = Some(exact);
-            exact
-        })
+    #[inline]
+    fn make_direction(&mut self, id: DirectionId) {
+        if self.directions[id.0 as usize].exact.is_none() {
+            let definition = self.directions[id.0 as usize].definition;
+            let range = range_of_direction(self.range, &definition);
+            self.directions[id.0 as usize].exact = Some(self.keep(range, |exact| exact.direction(&definition)));
+        }
     }
 
     /// Whether two splitters are one great circle.
@@ -390,14 +401,6 @@ impl Kernel {
         sign
     }
 
-    /// Decides with integers made before and counts which kind.
-    fn count(&mut self, decide: impl FnOnce(&mut Arena) -> Sign) -> Sign {
-        let arbitrary = self.arena.arbitrary_signs();
-        let sign = decide(&mut self.arena);
-        self.count_stage(arbitrary);
-        sign
-    }
-
     fn count_stage(&mut self, arbitrary_before: u64) {
         if self.arena.arbitrary_signs() == arbitrary_before {
             self.stats.fixed += 1;
@@ -407,7 +410,7 @@ impl Kernel {
     }
 
     /// Makes an integer vector that stays.
-    fn keep(&mut self, range: BitRange, make: impl FnOnce(&mut Constructor<'_>) -> Num3) -> Num3 {
+    fn keep(&mut self, range: BitRange, make: impl FnOnce(&mut Constructor<'_>) -> Num3) -> Kept3 {
         let wider = (range != self.range).then(|| Frame::new(range, self.eye));
         let frame = wider.as_ref().unwrap_or(&self.frame);
         let mark = self.arena.mark();

@@ -24,6 +24,6 @@ pub use stats::PredicateStats;
 
 pub(crate) use approx::{Approx3, U};
 pub(crate) use approximate::{ApproxPlane, ApproxPoint};
-pub(crate) use arena::{Arena, Num3};
+pub(crate) use arena::{Arena, Kept3, Num3};
 pub(crate) use construct::Constructor;
 pub(crate) use frame::{BitRange, Frame};

@@ -12,7 +12,7 @@ use robust::Coord3D;
 /// `a`, `b`, `c` run counter-clockwise, zero exactly on their plane. Right for all finite points.
 ///
 /// A filter of three products decides most calls; [`robust::orient3d`] most others; coordinates
-/// outside of the exponents where that is valid, and those only, go to integers: of two limbs where all
+/// outside of the exponents where that is valid, and those only, go to integers: of 128 bits where all
 /// lie within 125 bits of each other.
 ///
 /// ```
@@ -75,7 +75,7 @@ fn robust_is_valid(p: DVec3) -> bool {
 fn orient3d_integers(frame: &Frame, arena: &mut Arena, b: DVec3, c: DVec3, d: DVec3) -> Sign {
     if let [Some(p), Some(q), Some(r)] = [b, c, d].map(|point| frame.narrow_relative(point)) {
         let [p, q, r] = [p, q, r].map(|v| v.map(fixed::of_i128));
-        return fixed::det_sign::<2, 4, 7>(&p, &q, &r);
+        return fixed::det_sign::<3, 6, 8>(&p, &q, &r);
     }
     let [p, q, r] = [b, c, d].map(|point| frame.relative(arena, point));
     arena.det_sign(p, q, r)
