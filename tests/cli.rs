@@ -142,7 +142,10 @@ fn contour_json_keeps_to_its_schema() {
     for key in ["load_s", "bsp_s", "view_ms_mean", "view_ms_max", "threads"] {
         assert!(printed["timing"][key].as_f64().expect("a number") >= 0.0, "{key}");
     }
-    assert!(printed["predicates"]["visited_nodes"].as_u64().expect("a count") > 0);
+    let predicate = |key: &str| printed["predicates"][key].as_u64().expect("a count");
+    assert!(predicate("filter") > 0);
+    let decided = ["filter", "identity", "fixed", "arbitrary"].map(predicate);
+    assert_eq!(predicate("calls"), decided.iter().sum::<u64>());
 }
 
 #[test]

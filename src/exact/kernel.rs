@@ -262,7 +262,9 @@ impl Kernel {
             self.stats.identity += 1;
             return Sign::Zero;
         }
-        splitters.into_iter().for_each(|s| self.make_splitter(s));
+        for splitter in splitters {
+            self.make_splitter(splitter);
+        }
         // By reference: copies of what was just written wait for each other.
         let [Some(a), Some(b), Some(c)] = splitters.map(|s| self.splitters[s.0 as usize].exact.as_ref()) else {
             unreachable!("all were made")
