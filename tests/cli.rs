@@ -142,7 +142,10 @@ fn contour_json_keeps_to_its_schema() {
     for key in ["load_s", "bsp_s", "view_ms_mean", "view_ms_max", "threads"] {
         assert!(printed["timing"][key].as_f64().expect("a number") >= 0.0, "{key}");
     }
-    assert!(printed["predicates"]["visited_nodes"].as_u64().expect("a count") > 0);
+    assert!(printed["work"]["visited_nodes"].as_u64().expect("a count") > 0);
+    let count = |key: &str| printed["predicates"][key].as_u64().expect("a count");
+    assert!(count("filter") > 0);
+    assert_eq!(count("calls"), ["filter", "identity", "fixed", "arbitrary"].map(count).iter().sum::<u64>());
 }
 
 #[test]
