@@ -51,11 +51,14 @@ pub(crate) struct Kept3 {
     width: u32,
 }
 
+/// Zeros after the last digit, so that reading more digits than a number has stays within the buffer.
+const PADDING: usize = fixed::MOST_DIGITS;
+
 /// The buffer.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Arena {
     limbs: Vec<u64>,
-    /// The digits of vectors that stay.
+    /// The digits of vectors that stay, and [`PADDING`] zeros.
     digits: Vec<i64>,
     /// How many signs were too wide for fixed widths.
     arbitrary: u64,
@@ -365,17 +368,11 @@ impl Arena {
     fn digits<const W: usize>(&self, v: &Kept3) -> fixed::Fixed3<W> {
         let (start, width) = (v.start as usize, v.width as usize);
         let mut digits = [[0; W]; 3];
-        let stored = &self.digits[start..start + 3 * width];
-        if width == W {
-            // Of a length known here, so that it is copied without a call.
-            for (component, stored) in digits.iter_mut().zip(stored.chunks_exact(W)) {
-                component.copy_from_slice(stored);
-            }
-        } else if width > 0 {
-            for (component, stored) in digits.iter_mut().zip(stored.chunks_exact(width)) {
-                for (digit, stored) in component.iter_mut().zip(stored) {
-                    *digit = *stored;
-                }
+        for (c, component) in digits.iter_mut().enumerate() {
+            // Always as many as are wanted, whatever they are: a copy of a known length needs no call.
+            let window = &self.digits[start + c * width..][..W];
+            for k in 0..W {
+                component[k] = if k < width { window[k] } else { 0 };
             }
         }
         digits
@@ -400,7 +397,8 @@ impl Arena {
         }
         self.limbs.copy_within(tail.., mark);
         self.limbs.truncate(place);
-        let start = self.digits.len();
+        let start = self.digits.len().saturating_sub(PADDING);
+        self.digits.truncate(start);
         debug_assert!(u32::try_from(start).is_ok(), "vectors are forgotten long before 32 GiB");
         let width = self.width(kept);
         if width <= fixed::MOST_DIGITS {
@@ -411,6 +409,7 @@ impl Arena {
                 }
             }
         }
+        self.digits.resize(self.digits.len() + PADDING, 0);
         Kept3 { vector: kept, start: start as u32, width: width as u32 }
     }
 

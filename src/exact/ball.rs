@@ -109,7 +109,23 @@ mod tests {
         ]
     }
 
+    /// A multiple of the least number, within 2^-1018.
+    fn near_denormal() -> impl Strategy<Value = f64> {
+        (any::<i64>(), 0..60u32).prop_map(|(m, shift)| (m >> 7 >> shift) as f64 * LEAST)
+    }
+
     proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+        #[test]
+        fn quotients_of_radii_that_underflow_hold(a in near_denormal(), b in near_denormal(), c in near_denormal()) {
+            let from = Ball::exact(a) - Ball::exact(c);
+            let to = Ball::exact(b) - Ball::exact(c);
+            let exact = rational(a) - rational(b);
+            if !exact.is_zero() {
+                prop_assert!(holds(from.div(from - to), &((rational(a) - rational(c)) / exact)));
+            }
+        }
+
         #[test]
         fn balls_hold_the_true_value(a in number(), b in number(), c in number(), d in number()) {
             let (ra, rb, rc, rd) = (rational(a), rational(b), rational(c), rational(d));

@@ -257,13 +257,14 @@ impl Kernel {
 
     #[cold]
     fn undecided_orientation_of(&mut self, splitters: [SplitterId; 3]) -> Sign {
-        let [a, b, c] = splitters.map(|s| &self.splitters[s.0 as usize].definition);
+        // Of definitions taken in twice, integers find that they are the same.
+        let [a, b, c] = splitters;
         if a == b || b == c || c == a {
             self.stats.identity += 1;
             return Sign::Zero;
         }
-        for splitter in splitters {
-            self.make_splitter(splitter);
+        for s in splitters {
+            self.make_splitter(s);
         }
         // By reference: copies of what was just written wait for each other.
         let [Some(a), Some(b), Some(c)] = splitters.map(|s| self.splitters[s.0 as usize].exact.as_ref()) else {
@@ -280,19 +281,29 @@ impl Kernel {
     #[inline]
     fn make_splitter(&mut self, id: SplitterId) {
         if self.splitters[id.0 as usize].exact.is_none() {
-            let definition = self.splitters[id.0 as usize].definition;
-            let range = range_of_splitter(self.range, &definition);
-            self.splitters[id.0 as usize].exact = Some(self.keep(range, |exact| exact.splitter(&definition)));
+            self.make_new_splitter(id);
         }
+    }
+
+    #[cold]
+    fn make_new_splitter(&mut self, id: SplitterId) {
+        let definition = self.splitters[id.0 as usize].definition;
+        let range = range_of_splitter(self.range, &definition);
+        self.splitters[id.0 as usize].exact = Some(self.keep(range, |exact| exact.splitter(&definition)));
     }
 
     #[inline]
     fn make_direction(&mut self, id: DirectionId) {
         if self.directions[id.0 as usize].exact.is_none() {
-            let definition = self.directions[id.0 as usize].definition;
-            let range = range_of_direction(self.range, &definition);
-            self.directions[id.0 as usize].exact = Some(self.keep(range, |exact| exact.direction(&definition)));
+            self.make_new_direction(id);
         }
+    }
+
+    #[cold]
+    fn make_new_direction(&mut self, id: DirectionId) {
+        let definition = self.directions[id.0 as usize].definition;
+        let range = range_of_direction(self.range, &definition);
+        self.directions[id.0 as usize].exact = Some(self.keep(range, |exact| exact.direction(&definition)));
     }
 
     /// Whether two splitters are one great circle.
