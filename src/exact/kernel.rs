@@ -86,7 +86,8 @@ impl Kernel {
     /// slower where integers must decide.
     ///
     /// # Panics
-    /// If a coordinate is infinite or not a number; so do all predicates.
+    /// If a coordinate is infinite or not a number. So does a predicate whose answer takes integers; what
+    /// identity decides is not looked at.
     pub fn new(points: impl IntoIterator<Item = DVec3>, eye: DVec3) -> Self {
         let range = points.into_iter().fold(range_of_point(BitRange::EMPTY, eye), range_of_point);
         let frame = Frame::new(range, eye);
