@@ -1,5 +1,6 @@
 //! The tables of docs/performance.md: `cargo bench --bench measure`, or for one scene
-//! `cargo bench --bench measure -- room 50000 [quadtree depth]`.
+//! `cargo bench --bench measure -- room 50000 [quadtree depth]`; `floor` for a depth looks from points on
+//! the floor instead of points in the air.
 
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
@@ -20,18 +21,19 @@ fn main() -> Result<(), Box<dyn Error>> {
         "| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
     );
     if let [kind, polygons, rest @ ..] = words.as_slice() {
-        let depth = rest.first().map(|depth| depth.parse()).transpose()?;
-        return row(kind.parse()?, polygons.parse()?, depth);
+        let floor = rest.first().is_some_and(|word| word == "floor");
+        let depth = rest.first().filter(|_| !floor).map(|depth| depth.parse()).transpose()?;
+        return row(kind.parse()?, polygons.parse()?, depth, floor);
     }
     for kind in Kind::ALL {
         for polygons in [1_000, 10_000, 50_000] {
-            row(kind, polygons, None)?;
+            row(kind, polygons, None, false)?;
         }
     }
     Ok(())
 }
 
-fn row(kind: Kind, polygons: usize, depth: Option<u32>) -> Result<(), Box<dyn Error>> {
+fn row(kind: Kind, polygons: usize, depth: Option<u32>, floor: bool) -> Result<(), Box<dyn Error>> {
     let mesh = generate(kind, polygons, 1)?;
     let scene = mesh.to_builder().build()?;
     let start = Instant::now();
@@ -40,7 +42,8 @@ fn row(kind: Kind, polygons: usize, depth: Option<u32>) -> Result<(), Box<dyn Er
     let options = ViewOptions { quadtree_depth: depth, ..ViewOptions::default() };
     let (mut view, mut longest, mut factors, mut worst) = (0.0, 0.0f64, 0.0, 0.0f64);
     let mut counts = [0; 7];
-    for point in mesh.free_points(VIEWS, 3) {
+    let points = if floor { mesh.floor_points(VIEWS, 3) } else { mesh.free_points(VIEWS, 3) };
+    for point in points {
         let start = Instant::now();
         let image = bsp.view_with(&Viewpoint::free(DVec3::from(point)), &Domain::Hemisphere(DVec3::Z), &options)?;
         let time = start.elapsed().as_secs_f64();

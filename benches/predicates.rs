@@ -180,6 +180,22 @@ fn sides(c: &mut Criterion) {
             report(kernel.stats());
         }
     }
+    for (input, name) in Input::ALL {
+        // As the tree asks: many directions against one splitter, one after the other.
+        let mut random = Random(2);
+        let eye = random.point(input);
+        let mut kernel = Kernel::new([], eye);
+        let splitter = kernel.add_splitter(&Splitter::Edge([random.point(input), random.point(input)]));
+        let directions =
+            [(); CASES].map(|()| kernel.add_direction(&Direction::Point(Point::Given(random.point(input)))));
+        group.bench_function(BenchmarkId::new("filter, 64 points and one edge", name), |b| {
+            b.iter(|| {
+                let positive = |d: &&_| kernel.side_of(**d, black_box(splitter)) == Sign::Positive;
+                black_box(&directions).iter().filter(positive).count()
+            });
+        });
+        report(kernel.stats());
+    }
     group.finish();
 }
 

@@ -60,8 +60,8 @@ pub struct Kernel {
     range: BitRange,
     frame: Frame,
     arena: Arena,
-    splitters: Vec<Known<Splitter>>,
-    directions: Vec<Known<Direction>>,
+    splitters: Table<Splitter>,
+    directions: Table<Direction>,
     stats: PredicateStats,
 }
 
@@ -73,12 +73,31 @@ pub struct SplitterId(u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DirectionId(u32);
 
-/// A definition, its approximation and, once it was needed, its integer vector.
-#[derive(Clone, Copy, Debug)]
-struct Known<T> {
-    definition: T,
-    approx: Approx3,
-    exact: Option<Kept3>,
+/// What a kernel knows, each kind by number. What the filter reads lies side by side, apart from the much
+/// larger rest.
+#[derive(Clone, Debug)]
+struct Table<T> {
+    approx: Vec<Approx3>,
+    definitions: Vec<T>,
+    /// The integer vectors, once they were needed.
+    exact: Vec<Option<Kept3>>,
+}
+
+impl<T> Table<T> {
+    const EMPTY: Self = Self { approx: Vec::new(), definitions: Vec::new(), exact: Vec::new() };
+
+    fn push(&mut self, definition: T, approx: Approx3) -> u32 {
+        self.approx.push(approx);
+        self.definitions.push(definition);
+        self.exact.push(None);
+        self.exact.len() as u32 - 1
+    }
+
+    fn clear(&mut self) {
+        self.approx.clear();
+        self.definitions.clear();
+        self.exact.clear();
+    }
 }
 
 impl Kernel {
@@ -96,8 +115,8 @@ impl Kernel {
             range,
             frame,
             arena: Arena::default(),
-            splitters: Vec::new(),
-            directions: Vec::new(),
+            splitters: Table::EMPTY,
+            directions: Table::EMPTY,
             stats: PredicateStats::default(),
         }
     }
@@ -121,15 +140,13 @@ impl Kernel {
     /// made at most once.
     pub fn add_splitter(&mut self, definition: &Splitter) -> SplitterId {
         let approx = self.approx_splitter(definition);
-        self.splitters.push(Known { definition: *definition, approx, exact: None });
-        SplitterId(self.splitters.len() as u32 - 1)
+        SplitterId(self.splitters.push(*definition, approx))
     }
 
     /// Takes in a direction for calls that come often.
     pub fn add_direction(&mut self, definition: &Direction) -> DirectionId {
         let approx = self.approx_direction(definition);
-        self.directions.push(Known { definition: *definition, approx, exact: None });
-        DirectionId(self.directions.len() as u32 - 1)
+        DirectionId(self.directions.push(*definition, approx))
     }
 
     /// Forgets all splitters and directions taken in; their ids mean nothing any more. The memory is
@@ -196,8 +213,8 @@ impl Kernel {
     /// The same for a direction and a splitter taken in before.
     #[inline]
     pub fn side_of(&mut self, direction: DirectionId, splitter: SplitterId) -> Sign {
-        let approx = &self.directions[direction.0 as usize].approx;
-        if let Some(sign) = approx.dot_sign(&self.splitters[splitter.0 as usize].approx) {
+        let approx = &self.directions.approx[direction.0 as usize];
+        if let Some(sign) = approx.dot_sign(&self.splitters.approx[splitter.0 as usize]) {
             self.stats.filter += 1;
             return sign;
         }
@@ -206,15 +223,16 @@ impl Kernel {
 
     #[cold]
     fn undecided_side_of(&mut self, direction: DirectionId, splitter: SplitterId) -> Sign {
-        let (d, s) = (&self.directions[direction.0 as usize], &self.splitters[splitter.0 as usize]);
-        if lies_on(&d.definition, &s.definition) {
+        let (d, s) = (direction.0 as usize, splitter.0 as usize);
+        if lies_on(&self.directions.definitions[d], &self.splitters.definitions[s]) {
             self.stats.identity += 1;
             return Sign::Zero;
         }
         self.make_splitter(splitter);
         self.make_direction(direction);
-        let (d, s) = (&self.directions[direction.0 as usize].exact, &self.splitters[splitter.0 as usize].exact);
-        let (Some(direction), Some(normal)) = (d, s) else { unreachable!("both were made") };
+        let (Some(direction), Some(normal)) = (&self.directions.exact[d], &self.splitters.exact[s]) else {
+            unreachable!("both were made")
+        };
         let arbitrary = self.arena.arbitrary_signs();
         let sign = self.arena.kept_dot_sign(normal, direction);
         self.count_stage(arbitrary);
@@ -248,7 +266,7 @@ impl Kernel {
     /// The same for splitters taken in before.
     #[inline]
     pub fn orientation_of(&mut self, splitters: [SplitterId; 3]) -> Sign {
-        let [a, b, c] = splitters.map(|s| &self.splitters[s.0 as usize].approx);
+        let [a, b, c] = splitters.map(|s| &self.splitters.approx[s.0 as usize]);
         if let Some(sign) = b.cross(*c).dot_sign(a) {
             self.stats.filter += 1;
             return sign;
@@ -268,7 +286,7 @@ impl Kernel {
             self.make_splitter(s);
         }
         // By reference: copies of what was just written wait for each other.
-        let [Some(a), Some(b), Some(c)] = splitters.map(|s| self.splitters[s.0 as usize].exact.as_ref()) else {
+        let [Some(a), Some(b), Some(c)] = splitters.map(|s| self.splitters.exact[s.0 as usize].as_ref()) else {
             unreachable!("all were made")
         };
         let arbitrary = self.arena.arbitrary_signs();
@@ -281,30 +299,30 @@ impl Kernel {
     /// stands for its positive multiples too.
     #[inline]
     fn make_splitter(&mut self, id: SplitterId) {
-        if self.splitters[id.0 as usize].exact.is_none() {
+        if self.splitters.exact[id.0 as usize].is_none() {
             self.make_new_splitter(id);
         }
     }
 
     #[cold]
     fn make_new_splitter(&mut self, id: SplitterId) {
-        let definition = self.splitters[id.0 as usize].definition;
+        let definition = self.splitters.definitions[id.0 as usize];
         let range = range_of_splitter(self.range, &definition);
-        self.splitters[id.0 as usize].exact = Some(self.keep(range, |exact| exact.splitter(&definition)));
+        self.splitters.exact[id.0 as usize] = Some(self.keep(range, |exact| exact.splitter(&definition)));
     }
 
     #[inline]
     fn make_direction(&mut self, id: DirectionId) {
-        if self.directions[id.0 as usize].exact.is_none() {
+        if self.directions.exact[id.0 as usize].is_none() {
             self.make_new_direction(id);
         }
     }
 
     #[cold]
     fn make_new_direction(&mut self, id: DirectionId) {
-        let definition = self.directions[id.0 as usize].definition;
+        let definition = self.directions.definitions[id.0 as usize];
         let range = range_of_direction(self.range, &definition);
-        self.directions[id.0 as usize].exact = Some(self.keep(range, |exact| exact.direction(&definition)));
+        self.directions.exact[id.0 as usize] = Some(self.keep(range, |exact| exact.direction(&definition)));
     }
 
     /// Whether two splitters are one great circle.
