@@ -2,7 +2,7 @@
 //! contour tree: on which side of a great circle a direction lies.
 
 use crate::bsp::{LineDef, LineId, PointId, Skeleton, Tree};
-use crate::exact::{self, Approx3, Arena, Constructor, Frame, Kept3, Num3, PredicateStats, Sign};
+use crate::exact::{self, Approx3, Arena, Constructor, Frame, Kept3, PredicateStats, Sign, ZeroComponents};
 use crate::scene::{PlaneId, SupportingPlane, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -58,6 +58,8 @@ pub(crate) struct Directions {
     frame: Frame,
     circles: Vec<CircleDef>,
     normals: Vec<Approx3>,
+    /// The components of the normals that are 0 by definition.
+    zeros: Vec<ZeroComponents>,
     kept: Vec<LooseDirection>,
 }
 
@@ -96,15 +98,18 @@ impl ExactCache {
         }
         sign
     }
-
-    fn rounded(&self, exact: Num3) -> Approx3 {
-        Approx3::rounded(&self.arena, exact)
-    }
 }
 
 impl Directions {
     pub(crate) fn new(skeleton: &Skeleton, eye: DVec3) -> Self {
-        Self { eye, frame: Frame::new(skeleton.bits, eye), circles: Vec::new(), normals: Vec::new(), kept: Vec::new() }
+        Self {
+            eye,
+            frame: Frame::new(skeleton.bits, eye),
+            circles: Vec::new(),
+            normals: Vec::new(),
+            zeros: Vec::new(),
+            kept: Vec::new(),
+        }
     }
 
     fn push_circle(
@@ -116,8 +121,9 @@ impl Directions {
     ) -> CircleId {
         let id = CircleId(self.circles.len() as u32);
         self.circles.push(def);
+        self.zeros.push(ZeroComponents::of_splitter(&self.resolved(skeleton, id), self.eye));
         let refined = normal.is_poor().then(|| self.exact_normal(skeleton, id, cache));
-        self.normals.push(refined.map_or(normal, |exact| cache.rounded(exact.vector)));
+        self.normals.push(refined.map_or(normal, |exact| cache.arena.kept_rounded(&exact)));
         id
     }
 
@@ -147,15 +153,11 @@ impl Directions {
         let approx = match definition {
             DirectionDef::Point(point) => {
                 let exact = self.exact_point(skeleton, point, cache);
-                cache.rounded(exact.vector)
+                cache.arena.kept_rounded(&exact)
             }
             DirectionDef::Crossing { circles, reversed } => {
-                let [m, n] = circles.map(|c| self.exact_normal(skeleton, c, cache).vector);
-                let mark = cache.arena.mark();
-                let exact = if reversed { cache.arena.cross(n, m) } else { cache.arena.cross(m, n) };
-                let approx = cache.rounded(exact);
-                cache.arena.release(mark);
-                approx
+                let [m, n] = circles.map(|c| self.exact_normal(skeleton, c, cache));
+                if reversed { cache.arena.kept_cross(&n, &m) } else { cache.arena.kept_cross(&m, &n) }
             }
         };
         LooseDirection { definition, approx }
@@ -220,12 +222,7 @@ impl Directions {
     #[cold]
     #[inline(never)]
     fn undecided_side(&self, skeleton: &Skeleton, d: DirectionDef, c: CircleId, cache: &mut ExactCache) -> Sign {
-        let known_zero = match (d, self.circles[c.0 as usize]) {
-            (DirectionDef::Crossing { circles, .. }, _) => circles.contains(&c),
-            (DirectionDef::Point(point), CircleDef::Line(line)) => skeleton.known_on_line(point, line),
-            _ => false,
-        };
-        if known_zero {
+        if self.known_zero(skeleton, d, c) {
             cache.undecided.identity += 1;
             return Sign::Zero;
         }
@@ -243,19 +240,36 @@ impl Directions {
         }
     }
 
+    /// True if the side is known without arithmetic to be 0; false says nothing.
+    fn known_zero(&self, skeleton: &Skeleton, d: DirectionDef, c: CircleId) -> bool {
+        match (d, self.circles[c.0 as usize]) {
+            (DirectionDef::Crossing { circles, .. }, _) if circles.contains(&c) => true,
+            (DirectionDef::Point(point), CircleDef::Line(line)) if skeleton.known_on_line(point, line) => true,
+            (DirectionDef::Crossing { circles: [m, n], .. }, _) => {
+                ZeroComponents::shared([c, m, n].map(|circle| self.zeros[circle.0 as usize]))
+            }
+            (DirectionDef::Point(point), _) => {
+                let point = skeleton.resolved_point(skeleton.point(point));
+                ZeroComponents::of_point(&point, self.eye).cover(self.zeros[c.0 as usize])
+            }
+        }
+    }
+
+    /// A great circle by its coordinates.
+    fn resolved(&self, skeleton: &Skeleton, c: CircleId) -> exact::Splitter {
+        match self.circles[c.0 as usize] {
+            CircleDef::Line(line) => skeleton.resolved_line(line),
+            CircleDef::Given(normal) => exact::Splitter::Given(normal),
+            CircleDef::Parallel(plane) => exact::Splitter::Parallel(skeleton.resolved_plane(plane)),
+        }
+    }
+
     fn exact_normal(&self, skeleton: &Skeleton, c: CircleId, cache: &mut ExactCache) -> Kept3 {
         if let Some(&known) = cache.normals.get(&c) {
             return known;
         }
-        let arena = &mut cache.arena;
-        let mark = arena.mark();
-        let definition = match self.circles[c.0 as usize] {
-            CircleDef::Line(line) => skeleton.resolved_line(line),
-            CircleDef::Given(normal) => exact::Splitter::Given(normal),
-            CircleDef::Parallel(plane) => exact::Splitter::Parallel(skeleton.resolved_plane(plane)),
-        };
-        let normal = Constructor { frame: &self.frame, arena }.splitter(&definition);
-        let normal = arena.keep3(mark, normal);
+        let definition = self.resolved(skeleton, c);
+        let normal = Constructor { frame: &self.frame, arena: &mut cache.arena }.keep_splitter(&definition);
         cache.normals.insert(c, normal);
         normal
     }
@@ -264,10 +278,8 @@ impl Directions {
         if let Some(&known) = cache.points.get(&point) {
             return known;
         }
-        let mark = cache.arena.mark();
-        let point_definition = skeleton.resolved_point(skeleton.point(point));
-        let (x, _) = Constructor { frame: &self.frame, arena: &mut cache.arena }.point(&point_definition);
-        let x = cache.arena.keep3(mark, x);
+        let direction = exact::Direction::Point(skeleton.resolved_point(skeleton.point(point)));
+        let x = Constructor { frame: &self.frame, arena: &mut cache.arena }.keep_direction(&direction);
         cache.points.insert(point, x);
         x
     }
@@ -281,7 +293,8 @@ impl Directions {
         let mark = cache.arena.mark();
         let mut exact = Constructor { frame: &self.frame, arena: &mut cache.arena };
         let direction = exact.direction(&exact::Direction::Given(d));
-        let sign = cache.arena.dot_sign(normal.vector, direction);
+        let normal = cache.arena.numbers(&normal);
+        let sign = cache.arena.dot_sign(normal, direction);
         cache.arena.release(mark);
         sign
     }

@@ -4,7 +4,7 @@
 //! buffer keeps its capacity, so that a warmed-up arena does not touch the heap, and there is no
 //! width beyond which a result would be wrong: coordinates that span 2,000 bits just take longer.
 
-use super::{Sign, fixed};
+use super::{Approx3, Sign, U, fixed};
 use glam::DVec3;
 use std::cmp::Ordering;
 
@@ -41,14 +41,15 @@ impl Num {
 /// A vector of integers.
 pub(crate) type Num3 = [Num; 3];
 
-/// A vector that stays, with a copy in digits where it fits.
+/// A vector that stays: in digits if [`fixed::MOST_DIGITS`] hold it, in limbs if not.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kept3 {
-    pub(crate) vector: Num3,
     /// Where the digits start in [`Arena::digits`], one component after the other.
     start: u32,
-    /// Digits a component; more than [`fixed::MOST_DIGITS`] if there is no copy.
+    /// Digits a component.
     width: u32,
+    /// The limbs where there are too many digits, zeros elsewhere.
+    wide: Num3,
 }
 
 /// Zeros after the last digit, so that reading more digits than a number has stays within the buffer.
@@ -242,7 +243,13 @@ impl Arena {
             5..=6 => fixed!(6),
             7..=8 => fixed!(8),
             9..=fixed::MOST_DIGITS => fixed!(12),
-            _ => self.wide_dot_sign(a.vector, b.vector),
+            _ => {
+                let mark = self.mark();
+                let [a, b] = [a, b].map(|v| self.numbers(v));
+                let sign = self.wide_dot_sign(a, b);
+                self.release(mark);
+                sign
+            }
         }
     }
 
@@ -288,8 +295,40 @@ impl Arena {
             7 => fixed!(7),
             8 => fixed!(8),
             9..=fixed::MOST_DIGITS => fixed!(12),
-            _ => self.wide_det_sign(a.vector, b.vector, c.vector),
+            _ => {
+                let mark = self.mark();
+                let [a, b, c] = [a, b, c].map(|v| self.numbers(v));
+                let sign = self.wide_det_sign(a, b, c);
+                self.release(mark);
+                sign
+            }
         }
+    }
+
+    /// `a x b` rounded; leaves nothing behind.
+    pub(crate) fn kept_cross(&mut self, a: &Kept3, b: &Kept3) -> Approx3 {
+        macro_rules! fixed {
+            ($w:literal) => {
+                fixed::rounded_cross::<$w, { 2 * $w }>(&self.digits(a), &self.digits(b))
+            };
+        }
+        let cross = match a.width.max(b.width) as usize {
+            0..=2 => fixed!(2),
+            3 => fixed!(3),
+            4 => fixed!(4),
+            5..=6 => fixed!(6),
+            7..=8 => fixed!(8),
+            9..=fixed::MOST_DIGITS => fixed!(12),
+            _ => {
+                let mark = self.mark();
+                let [a, b] = [a, b].map(|v| self.numbers(v));
+                let cross = self.cross(a, b);
+                let cross = self.direction(cross);
+                self.release(mark);
+                cross
+            }
+        };
+        Approx3::known(cross, 4.0 * U * cross.abs().max_element())
     }
 
     #[cold]
@@ -384,33 +423,79 @@ impl Arena {
         self.digits.clear();
     }
 
-    /// Moves a vector made since `mark` down to the mark and releases all else made since: what is
-    /// kept stays, what it was made from goes.
+    /// Keeps a vector and releases all that was made since `mark`; what is kept in limbs moves down to it.
     pub(crate) fn keep3(&mut self, mark: usize, v: Num3) -> Kept3 {
-        let tail = self.limbs.len();
-        let mut kept = v;
-        let mut place = mark;
-        for n in &mut kept {
-            self.limbs.extend_from_within(Self::range(*n));
-            n.start = place as u32;
-            place += n.len as usize;
+        let width = self.width(v);
+        if width > fixed::MOST_DIGITS {
+            let tail = self.limbs.len();
+            let mut wide = v;
+            let mut place = mark;
+            for n in &mut wide {
+                self.limbs.extend_from_within(Self::range(*n));
+                n.start = place as u32;
+                place += n.len as usize;
+            }
+            self.limbs.copy_within(tail.., mark);
+            self.limbs.truncate(place);
+            return Kept3 { start: 0, width: width as u32, wide };
         }
-        self.limbs.copy_within(tail.., mark);
-        self.limbs.truncate(place);
+        let start = self.start_digits();
+        for n in v {
+            for k in 0..width {
+                let digit = self.digit(n, k);
+                self.digits.push(digit);
+            }
+        }
+        self.release(mark);
+        self.finish_digits(start, width)
+    }
+
+    /// Keeps a vector that was made in digits.
+    pub(crate) fn keep_digits<const W: usize>(&mut self, v: &fixed::Fixed3<W>) -> Kept3 {
+        let width = (0..W).rev().find(|&k| v.iter().any(|digits| digits[k] != 0)).map_or(0, |k| k + 1);
+        let start = self.start_digits();
+        for digits in v {
+            self.digits.extend_from_slice(&digits[..width]);
+        }
+        self.finish_digits(start, width)
+    }
+
+    fn start_digits(&mut self) -> usize {
         let start = self.digits.len().saturating_sub(PADDING);
         self.digits.truncate(start);
         debug_assert!(u32::try_from(start).is_ok(), "vectors are forgotten long before 32 GiB");
-        let width = self.width(kept);
-        if width <= fixed::MOST_DIGITS {
-            for n in kept {
-                for k in 0..width {
-                    let digit = self.digit(n, k);
-                    self.digits.push(digit);
-                }
-            }
-        }
+        start
+    }
+
+    fn finish_digits(&mut self, start: usize, width: usize) -> Kept3 {
         self.digits.resize(self.digits.len() + PADDING, 0);
-        Kept3 { vector: kept, start: start as u32, width: width as u32 }
+        Kept3 { start: start as u32, width: width as u32, wide: [Num::ZERO; 3] }
+    }
+
+    /// A vector that was kept, in limbs.
+    pub(crate) fn numbers(&mut self, v: &Kept3) -> Num3 {
+        let (start, width) = (v.start as usize, v.width as usize);
+        if width > fixed::MOST_DIGITS {
+            return v.wide;
+        }
+        [0, 1, 2].map(|component| {
+            let mut sum = Num::ZERO;
+            for k in 0..width {
+                let digit = self.digits[start + component * width + k];
+                let term = self.shifted(digit.unsigned_abs(), k as u32 * fixed::DIGIT, digit < 0);
+                sum = self.add(sum, term);
+            }
+            sum
+        })
+    }
+
+    /// A vector that was kept, rounded; leaves nothing behind.
+    pub(crate) fn kept_rounded(&mut self, v: &Kept3) -> Approx3 {
+        let mark = self.mark();
+        let vector = self.numbers(v);
+        let approx = Approx3::rounded(self, vector);
+        self.release(mark);
+        approx
     }
 
     /// The vector scaled by a power of two to a largest component in `[0.5, 1]`, each component
@@ -448,7 +533,10 @@ impl Arena {
 
 /// `2^exponent`, 0 or infinite where f64 cannot hold it.
 fn power_of_two(exponent: i64) -> f64 {
-    2f64.powi(exponent.clamp(-1100, 1100) as i32)
+    match exponent {
+        -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
+        _ => 2f64.powi(exponent.clamp(-1100, 1100) as i32),
+    }
 }
 
 #[cfg(test)]
@@ -508,8 +596,16 @@ mod tests {
                 (v, arena.keep3(mark, copy))
             });
             for (v, kept_v) in &kept {
+                let back = arena.numbers(kept_v);
+                for (n, m) in v.iter().zip(back) {
+                    prop_assert_eq!(big(&arena, *n), big(&arena, m));
+                }
                 for (w, kept_w) in &kept {
                     prop_assert_eq!(arena.kept_dot_sign(kept_v, kept_w), arena.dot_sign(*v, *w));
+                    let cross = arena.cross(*v, *w);
+                    let (exact, approx) = (Approx3::rounded(&arena, cross), arena.kept_cross(kept_v, kept_w));
+                    let off = (exact.v - approx.v).abs().max_element();
+                    prop_assert!(off <= exact.error_bound() + approx.error_bound(), "{} {}", exact.v, approx.v);
                     for (u, kept_u) in &kept {
                         prop_assert_eq!(arena.kept_det_sign(kept_u, kept_v, kept_w), arena.det_sign(*u, *v, *w));
                     }

@@ -3,10 +3,10 @@
 //! All of them are relative to the frame's origin, in its grid units; each vector may be a positive
 //! multiple of what it stands for.
 
-use super::Sign;
-use super::arena::{Arena, Num, Num3};
+use super::arena::{Arena, Kept3, Num, Num3};
 use super::definition::{Direction, Plane, Point, Splitter};
 use super::frame::{Frame, given_vector};
+use super::{Sign, fixed};
 
 /// A frame and the arena that numbers are made in.
 #[derive(Debug)]
@@ -85,6 +85,30 @@ impl Constructor<'_> {
             Splitter::Given(normal) => given_vector(self.arena, *normal),
             Splitter::Parallel(plane) => self.plane(plane).0,
         }
+    }
+
+    /// The normal of a splitter, kept.
+    pub(crate) fn keep_splitter(&mut self, splitter: &Splitter) -> Kept3 {
+        if let Splitter::Edge(ends) = splitter
+            && let [Some(a), Some(b)] = ends.map(|p| self.frame.narrow_relative(p))
+        {
+            return self.arena.keep_digits(&fixed::narrow_cross(a, b));
+        }
+        let mark = self.arena.mark();
+        let normal = self.splitter(splitter);
+        self.arena.keep3(mark, normal)
+    }
+
+    /// A direction, kept.
+    pub(crate) fn keep_direction(&mut self, direction: &Direction) -> Kept3 {
+        if let Direction::Point(Point::Given(p)) = direction
+            && let Some(p) = self.frame.narrow_relative(*p)
+        {
+            return self.arena.keep_digits(&p.map(fixed::of_i128));
+        }
+        let mark = self.arena.mark();
+        let direction = self.direction(direction);
+        self.arena.keep3(mark, direction)
     }
 
     /// A direction.

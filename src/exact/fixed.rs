@@ -11,6 +11,7 @@
 //!   `W <= 12`, below `2^126.2`. What is carried over from the column before is below `2^67`.
 
 use super::Sign;
+use glam::DVec3;
 
 /// A vector of `W` digits a component.
 pub(crate) type Fixed3<const W: usize> = [[i64; W]; 3];
@@ -53,6 +54,42 @@ pub(crate) fn det_sign<const W: usize, const C: usize, const R: usize>(
         }
     }
     sign(&sums)
+}
+
+/// `a x b` in signs and magnitudes: `C` is `2 W`, and digits are in `[0, 2^60)` but for the last.
+#[inline]
+fn cross<const W: usize, const C: usize>(a: &Fixed3<W>, b: &Fixed3<W>) -> [(bool, [i64; C]); 3] {
+    const { assert!(W <= MOST_DIGITS && C == 2 * W) };
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| {
+        let mut columns = [0; C];
+        for p in 0..W {
+            for q in 0..W {
+                columns[p + q] += wide(a[i][p], b[j][q]) - wide(a[j][p], b[i][q]);
+            }
+        }
+        let digits = carried(&columns);
+        if digits[C - 1] < 0 { (true, carried(&columns.map(|column| -column))) } else { (false, digits) }
+    })
+}
+
+/// `a x b` up to a positive factor, each component off by at most `2 u` of the largest. `C` is `2 W`.
+///
+/// The digit at which the largest component begins and the one below it hold at least 61 bits of it; cutting
+/// off the others loses less than `2^-60` of it, and rounding what is left loses `u` of each component.
+#[inline]
+pub(crate) fn rounded_cross<const W: usize, const C: usize>(a: &Fixed3<W>, b: &Fixed3<W>) -> DVec3 {
+    let components = cross::<W, C>(a, b);
+    let top = (1..C).rev().find(|&d| components.iter().any(|(_, digits)| digits[d] != 0)).unwrap_or(1);
+    DVec3::from(components.map(|(negative, digits)| {
+        let pair = ((digits[top] as u128) << DIGIT | digits[top - 1] as u128) as f64;
+        if negative { -pair } else { pair }
+    }))
+}
+
+/// `a x b` for vectors of 126 bits: below `2^253`, so that the last digit is one like the others.
+pub(crate) fn narrow_cross(a: [i128; 3], b: [i128; 3]) -> Fixed3<6> {
+    let components = cross::<3, 6>(&a.map(of_i128), &b.map(of_i128));
+    components.map(|(negative, digits)| if negative { digits.map(|digit| -digit) } else { digits })
 }
 
 /// The sign of `a . b` for vectors of up to four components. `C` is `2 W - 1`.

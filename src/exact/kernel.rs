@@ -12,6 +12,7 @@ use super::construct::Constructor;
 use super::definition::{Direction, Plane, Point, Splitter};
 use super::frame::{BitRange, Frame};
 use super::orient::{orient3d_expansions, orient3d_filter};
+use super::zeros::{lies_on, meet_in_an_axis_plane, point_in_plane};
 use super::{PredicateStats, Sign};
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -191,7 +192,7 @@ impl Kernel {
 
     /// On which side of a splitter a direction lies: the sign of `n . d`.
     pub fn side(&mut self, direction: &Direction, splitter: &Splitter) -> Sign {
-        if lies_on(direction, splitter) {
+        if lies_on(direction, splitter, self.eye) {
             self.stats.identity += 1;
             return Sign::Zero;
         }
@@ -224,7 +225,7 @@ impl Kernel {
     #[cold]
     fn undecided_side_of(&mut self, direction: DirectionId, splitter: SplitterId) -> Sign {
         let (d, s) = (direction.0 as usize, splitter.0 as usize);
-        if lies_on(&self.directions.definitions[d], &self.splitters.definitions[s]) {
+        if lies_on(&self.directions.definitions[d], &self.splitters.definitions[s], self.eye) {
             self.stats.identity += 1;
             return Sign::Zero;
         }
@@ -250,6 +251,10 @@ impl Kernel {
         if let Some(sign) = q.cross(r).dot_sign(&p) {
             self.stats.filter += 1;
             return sign;
+        }
+        if meet_in_an_axis_plane(splitters, self.eye) {
+            self.stats.identity += 1;
+            return Sign::Zero;
         }
         self.undecided_orientation(splitters)
     }
@@ -278,7 +283,8 @@ impl Kernel {
     fn undecided_orientation_of(&mut self, splitters: [SplitterId; 3]) -> Sign {
         // Of definitions taken in twice, integers find that they are the same.
         let [a, b, c] = splitters;
-        if a == b || b == c || c == a {
+        let definitions = splitters.map(|s| &self.splitters.definitions[s.0 as usize]);
+        if a == b || b == c || c == a || meet_in_an_axis_plane(definitions, self.eye) {
             self.stats.identity += 1;
             return Sign::Zero;
         }
@@ -308,7 +314,7 @@ impl Kernel {
     fn make_new_splitter(&mut self, id: SplitterId) {
         let definition = self.splitters.definitions[id.0 as usize];
         let range = range_of_splitter(self.range, &definition);
-        self.splitters.exact[id.0 as usize] = Some(self.keep(range, |exact| exact.splitter(&definition)));
+        self.splitters.exact[id.0 as usize] = Some(self.keep(range, |exact| exact.keep_splitter(&definition)));
     }
 
     #[inline]
@@ -322,7 +328,7 @@ impl Kernel {
     fn make_new_direction(&mut self, id: DirectionId) {
         let definition = self.directions.definitions[id.0 as usize];
         let range = range_of_direction(self.range, &definition);
-        self.directions.exact[id.0 as usize] = Some(self.keep(range, |exact| exact.direction(&definition)));
+        self.directions.exact[id.0 as usize] = Some(self.keep(range, |exact| exact.keep_direction(&definition)));
     }
 
     /// Whether two splitters are one great circle.
@@ -442,12 +448,10 @@ impl Kernel {
     }
 
     /// Makes an integer vector that stays.
-    fn keep(&mut self, range: BitRange, make: impl FnOnce(&mut Constructor<'_>) -> Num3) -> Kept3 {
+    fn keep(&mut self, range: BitRange, make: impl FnOnce(&mut Constructor<'_>) -> Kept3) -> Kept3 {
         let wider = (range != self.range).then(|| Frame::new(range, self.eye));
         let frame = wider.as_ref().unwrap_or(&self.frame);
-        let mark = self.arena.mark();
-        let made = make(&mut Constructor { frame, arena: &mut self.arena });
-        self.arena.keep3(mark, made)
+        make(&mut Constructor { frame, arena: &mut self.arena })
     }
 
     /// Works with integers on a grid that holds `range`.
@@ -487,30 +491,6 @@ impl ApproxPoint {
 /// The sign of a difference, which comparing finds without rounding.
 fn compare(a: f64, b: f64) -> Option<Sign> {
     if a.is_finite() && b.is_finite() { a.partial_cmp(&b).map(Sign::from) } else { None }
-}
-
-/// True if a direction is known to lie on a splitter by what the two are defined from.
-fn lies_on(direction: &Direction, splitter: &Splitter) -> bool {
-    match (direction, splitter) {
-        (Direction::Crossing(pair), _) => pair.contains(splitter),
-        (Direction::Point(Point::Given(p)), Splitter::Edge(ends)) => ends.contains(p),
-        (Direction::Point(Point::EdgePlane(ends, _)), Splitter::Edge(other)) => {
-            ends == other || (ends[0] == other[1] && ends[1] == other[0])
-        }
-        (Direction::Point(Point::Planes(three)), Splitter::Crease(two)) => two.iter().all(|p| three.contains(p)),
-        _ => false,
-    }
-}
-
-/// True if a point is known to lie in a plane by what the two are defined from.
-fn point_in_plane(point: &Point, plane: &Plane) -> bool {
-    match (point, plane) {
-        (Point::Given(p), Plane::Points(points)) => points.contains(p),
-        (Point::EdgePlane(_, cut), _) if cut == plane => true,
-        (Point::EdgePlane(ends, _), Plane::Points(points)) => ends.iter().all(|end| points.contains(end)),
-        (Point::Planes(planes), _) => planes.contains(plane),
-        _ => false,
-    }
 }
 
 fn range_of_point(range: BitRange, point: DVec3) -> BitRange {

@@ -15,6 +15,7 @@ mod kernel;
 mod orient;
 mod sign;
 mod stats;
+mod zeros;
 
 pub use definition::{Direction, Plane, Point, Splitter};
 pub use kernel::{Along, CircleRelation, DirectionId, Kernel, SplitterId};
@@ -24,6 +25,7 @@ pub use stats::PredicateStats;
 
 pub(crate) use approx::{Approx3, U};
 pub(crate) use approximate::{ApproxPlane, ApproxPoint};
-pub(crate) use arena::{Arena, Kept3, Num3};
+pub(crate) use arena::{Arena, Kept3};
 pub(crate) use construct::Constructor;
 pub(crate) use frame::{BitRange, Frame};
+pub(crate) use zeros::ZeroComponents;

@@ -2,12 +2,14 @@
 
 use std::ops::AddAssign;
 
-/// Calls of predicates and what decided them. Every call is decided by exactly one stage.
+/// Calls of predicates and what decided them. Every call is decided by exactly one stage;
+/// [`Kernel::depth_order`](super::Kernel::depth_order) makes up to three calls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PredicateStats {
     /// Decided by the f64 filter.
     pub filter: u64,
-    /// Left undecided by the filter, then known by identity: a direction on a splitter that defines it.
+    /// Left undecided by the filter, then known without arithmetic: a direction on a splitter that defines
+    /// it, three edges along one axis.
     pub identity: u64,
     /// Decided by integers of fixed width, or by expansions.
     pub fixed: u64,

@@ -1,0 +1,101 @@
+//! Zeros that need no arithmetic: known by what things are defined from, or by comparing coordinates.
+//!
+//! In buildings most zeros are of the second kind: edges along one axis, the sides of a quadtree,
+//! vertices as high as the eye.
+
+use super::definition::{Direction, Plane, Point, Splitter};
+use glam::DVec3;
+
+/// The components of a vector that are certainly 0, one bit for each axis. A bit that is not set says nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ZeroComponents(u8);
+
+impl ZeroComponents {
+    fn from_fn(zero: impl Fn(usize) -> bool) -> Self {
+        Self((0..3).fold(0, |bits, axis| bits | u8::from(zero(axis)) << axis))
+    }
+
+    /// True if three vectors share a zero: their determinant is 0. So it is for three edges along one axis.
+    pub(crate) fn shared([a, b, c]: [Self; 3]) -> bool {
+        a.0 & b.0 & c.0 != 0
+    }
+
+    /// True if each term of the dot product of two vectors has a zero.
+    pub(crate) fn cover(self, other: Self) -> bool {
+        self.0 | other.0 == 0b111
+    }
+
+    /// Those of the normal of a splitter.
+    ///
+    /// For an edge, component `k` is `p_i q_j - p_j q_i` with `p = a - e`, `q = b - e`. It is 0 where the edge runs
+    /// along axis `k`, and where `p` and `q` share a zero in `i` or `j`.
+    pub(crate) fn of_splitter(splitter: &Splitter, eye: DVec3) -> Self {
+        match splitter {
+            Splitter::Edge([a, b]) => Self::from_fn(|k| {
+                let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+                let level = |axis: usize| a[axis] == eye[axis] && b[axis] == eye[axis];
+                level(i) || level(j) || (a[i] == b[i] && a[j] == b[j])
+            }),
+            Splitter::Crease([Plane::Axis { axis: i, .. }, Plane::Axis { axis: j, .. }]) => {
+                Self::from_fn(|k| k != *i && k != *j)
+            }
+            Splitter::Given(normal) => Self::from_fn(|k| normal[k] == 0.0),
+            Splitter::Parallel(Plane::Axis { axis, .. }) => Self::from_fn(|k| k != *axis),
+            Splitter::Crease(_) | Splitter::Parallel(Plane::Points(_)) => Self(0),
+        }
+    }
+
+    /// Those of a direction that is not a crossing.
+    fn of_direction(direction: &Direction, eye: DVec3) -> Self {
+        match direction {
+            Direction::Given(d) => Self::from_fn(|k| d[k] == 0.0),
+            Direction::Point(point) => Self::of_point(point, eye),
+            Direction::Crossing(_) => Self(0),
+        }
+    }
+
+    /// Those of the direction to a point.
+    pub(crate) fn of_point(point: &Point, eye: DVec3) -> Self {
+        let in_plane =
+            |plane: &Plane, k: usize| matches!(*plane, Plane::Axis { axis, value } if axis == k && value == eye[k]);
+        Self::from_fn(|k| match point {
+            Point::Given(p) => p[k] == eye[k],
+            Point::EdgePlane([a, b], plane) => (a[k] == eye[k] && b[k] == eye[k]) || in_plane(plane, k),
+            Point::Planes(planes) => planes.iter().any(|plane| in_plane(plane, k)),
+        })
+    }
+}
+
+/// True if a direction is known to lie on a splitter.
+pub(crate) fn lies_on(direction: &Direction, splitter: &Splitter, eye: DVec3) -> bool {
+    let by_identity = match (direction, splitter) {
+        (Direction::Crossing(pair), _) => pair.contains(splitter),
+        (Direction::Point(Point::Given(p)), Splitter::Edge(ends)) => ends.contains(p),
+        (Direction::Point(Point::EdgePlane(ends, _)), Splitter::Edge(other)) => {
+            ends == other || (ends[0] == other[1] && ends[1] == other[0])
+        }
+        (Direction::Point(Point::Planes(three)), Splitter::Crease(two)) => two.iter().all(|p| three.contains(p)),
+        _ => false,
+    };
+    by_identity
+        || match direction {
+            Direction::Crossing([m, n]) => meet_in_an_axis_plane([splitter, m, n], eye),
+            _ => ZeroComponents::of_direction(direction, eye).cover(ZeroComponents::of_splitter(splitter, eye)),
+        }
+}
+
+/// True if the normals of three splitters are known to share a zero component.
+pub(crate) fn meet_in_an_axis_plane(splitters: [&Splitter; 3], eye: DVec3) -> bool {
+    ZeroComponents::shared(splitters.map(|s| ZeroComponents::of_splitter(s, eye)))
+}
+
+/// True if a point is known to lie in a plane.
+pub(crate) fn point_in_plane(point: &Point, plane: &Plane) -> bool {
+    match (point, plane) {
+        (Point::Given(p), Plane::Points(points)) => points.contains(p),
+        (Point::EdgePlane(_, cut), _) if cut == plane => true,
+        (Point::EdgePlane(ends, _), Plane::Points(points)) => ends.iter().all(|end| points.contains(end)),
+        (Point::Planes(planes), _) => planes.contains(plane),
+        _ => false,
+    }
+}
