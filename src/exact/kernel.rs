@@ -12,7 +12,7 @@ use super::construct::Constructor;
 use super::definition::{Direction, Plane, Point, Splitter};
 use super::frame::{BitRange, Frame};
 use super::orient::{orient3d_expansions, orient3d_filter};
-use super::zeros::{lies_on, meet_in_an_axis_plane, point_in_plane};
+use super::zeros::{ZeroComponents, defined_on, point_in_plane};
 use super::{PredicateStats, Sign};
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -80,16 +80,18 @@ pub struct DirectionId(u32);
 struct Table<T> {
     approx: Vec<Approx3>,
     definitions: Vec<T>,
+    zeros: Vec<ZeroComponents>,
     /// The integer vectors, once they were needed.
     exact: Vec<Option<Kept3>>,
 }
 
 impl<T> Table<T> {
-    const EMPTY: Self = Self { approx: Vec::new(), definitions: Vec::new(), exact: Vec::new() };
+    const EMPTY: Self = Self { approx: Vec::new(), definitions: Vec::new(), zeros: Vec::new(), exact: Vec::new() };
 
-    fn push(&mut self, definition: T, approx: Approx3) -> u32 {
+    fn push(&mut self, definition: T, approx: Approx3, zeros: ZeroComponents) -> u32 {
         self.approx.push(approx);
         self.definitions.push(definition);
+        self.zeros.push(zeros);
         self.exact.push(None);
         self.exact.len() as u32 - 1
     }
@@ -97,6 +99,7 @@ impl<T> Table<T> {
     fn clear(&mut self) {
         self.approx.clear();
         self.definitions.clear();
+        self.zeros.clear();
         self.exact.clear();
     }
 }
@@ -141,13 +144,13 @@ impl Kernel {
     /// made at most once.
     pub fn add_splitter(&mut self, definition: &Splitter) -> SplitterId {
         let approx = self.approx_splitter(definition);
-        SplitterId(self.splitters.push(*definition, approx))
+        SplitterId(self.splitters.push(*definition, approx, ZeroComponents::of_splitter(definition, self.eye)))
     }
 
     /// Takes in a direction for calls that come often.
     pub fn add_direction(&mut self, definition: &Direction) -> DirectionId {
         let approx = self.approx_direction(definition);
-        DirectionId(self.directions.push(*definition, approx))
+        DirectionId(self.directions.push(*definition, approx, ZeroComponents::of_direction(definition, self.eye)))
     }
 
     /// Forgets all splitters and directions taken in; their ids mean nothing any more. The memory is
@@ -192,7 +195,8 @@ impl Kernel {
 
     /// On which side of a splitter a direction lies: the sign of `n . d`.
     pub fn side(&mut self, direction: &Direction, splitter: &Splitter) -> Sign {
-        if lies_on(direction, splitter, self.eye) {
+        let zeros = ZeroComponents::of_direction(direction, self.eye);
+        if defined_on(direction, splitter) || zeros.cover(ZeroComponents::of_splitter(splitter, self.eye)) {
             self.stats.identity += 1;
             return Sign::Zero;
         }
@@ -225,7 +229,9 @@ impl Kernel {
     #[cold]
     fn undecided_side_of(&mut self, direction: DirectionId, splitter: SplitterId) -> Sign {
         let (d, s) = (direction.0 as usize, splitter.0 as usize);
-        if lies_on(&self.directions.definitions[d], &self.splitters.definitions[s], self.eye) {
+        if self.directions.zeros[d].cover(self.splitters.zeros[s])
+            || defined_on(&self.directions.definitions[d], &self.splitters.definitions[s])
+        {
             self.stats.identity += 1;
             return Sign::Zero;
         }
@@ -252,7 +258,7 @@ impl Kernel {
             self.stats.filter += 1;
             return sign;
         }
-        if meet_in_an_axis_plane(splitters, self.eye) {
+        if ZeroComponents::shared(splitters.map(|s| ZeroComponents::of_splitter(s, self.eye))) {
             self.stats.identity += 1;
             return Sign::Zero;
         }
@@ -283,8 +289,8 @@ impl Kernel {
     fn undecided_orientation_of(&mut self, splitters: [SplitterId; 3]) -> Sign {
         // Of definitions taken in twice, integers find that they are the same.
         let [a, b, c] = splitters;
-        let definitions = splitters.map(|s| &self.splitters.definitions[s.0 as usize]);
-        if a == b || b == c || c == a || meet_in_an_axis_plane(definitions, self.eye) {
+        let zeros = splitters.map(|s| self.splitters.zeros[s.0 as usize]);
+        if a == b || b == c || c == a || ZeroComponents::shared(zeros) {
             self.stats.identity += 1;
             return Sign::Zero;
         }

@@ -33,8 +33,8 @@ impl ZeroComponents {
         match splitter {
             Splitter::Edge([a, b]) => Self::from_fn(|k| {
                 let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-                let level = |axis: usize| a[axis] == eye[axis] && b[axis] == eye[axis];
-                level(i) || level(j) || (a[i] == b[i] && a[j] == b[j])
+                let level = |axis: usize| equal(a[axis], eye[axis]) && equal(b[axis], eye[axis]);
+                level(i) || level(j) || (equal(a[i], b[i]) && equal(a[j], b[j]))
             }),
             Splitter::Crease([Plane::Axis { axis: i, .. }, Plane::Axis { axis: j, .. }]) => {
                 Self::from_fn(|k| k != *i && k != *j)
@@ -45,30 +45,37 @@ impl ZeroComponents {
         }
     }
 
-    /// Those of a direction that is not a crossing.
-    fn of_direction(direction: &Direction, eye: DVec3) -> Self {
+    /// Those of a direction. Two normals with a zero in `k` cross along axis `k`.
+    pub(crate) fn of_direction(direction: &Direction, eye: DVec3) -> Self {
         match direction {
             Direction::Given(d) => Self::from_fn(|k| d[k] == 0.0),
             Direction::Point(point) => Self::of_point(point, eye),
-            Direction::Crossing(_) => Self(0),
+            Direction::Crossing(splitters) => {
+                let [m, n] = splitters.map(|s| Self::of_splitter(&s, eye));
+                Self::from_fn(|k| (0..3).any(|other| other != k && m.0 & n.0 & 1 << other != 0))
+            }
         }
     }
 
     /// Those of the direction to a point.
     pub(crate) fn of_point(point: &Point, eye: DVec3) -> Self {
-        let in_plane =
-            |plane: &Plane, k: usize| matches!(*plane, Plane::Axis { axis, value } if axis == k && value == eye[k]);
+        let in_plane = |plane: &Plane, k: usize| matches!(*plane, Plane::Axis { axis, value } if axis == k && equal(value, eye[k]));
         Self::from_fn(|k| match point {
-            Point::Given(p) => p[k] == eye[k],
-            Point::EdgePlane([a, b], plane) => (a[k] == eye[k] && b[k] == eye[k]) || in_plane(plane, k),
+            Point::Given(p) => equal(p[k], eye[k]),
+            Point::EdgePlane([a, b], plane) => (equal(a[k], eye[k]) && equal(b[k], eye[k])) || in_plane(plane, k),
             Point::Planes(planes) => planes.iter().any(|plane| in_plane(plane, k)),
         })
     }
 }
 
-/// True if a direction is known to lie on a splitter.
-pub(crate) fn lies_on(direction: &Direction, splitter: &Splitter, eye: DVec3) -> bool {
-    let by_identity = match (direction, splitter) {
+/// Exact: denormal numbers are kept, so a difference is 0 for equal numbers only.
+fn equal(x: f64, y: f64) -> bool {
+    x - y == 0.0
+}
+
+/// True if a direction lies on a splitter because of what the two are defined from.
+pub(crate) fn defined_on(direction: &Direction, splitter: &Splitter) -> bool {
+    match (direction, splitter) {
         (Direction::Crossing(pair), _) => pair.contains(splitter),
         (Direction::Point(Point::Given(p)), Splitter::Edge(ends)) => ends.contains(p),
         (Direction::Point(Point::EdgePlane(ends, _)), Splitter::Edge(other)) => {
@@ -76,17 +83,7 @@ pub(crate) fn lies_on(direction: &Direction, splitter: &Splitter, eye: DVec3) ->
         }
         (Direction::Point(Point::Planes(three)), Splitter::Crease(two)) => two.iter().all(|p| three.contains(p)),
         _ => false,
-    };
-    by_identity
-        || match direction {
-            Direction::Crossing([m, n]) => meet_in_an_axis_plane([splitter, m, n], eye),
-            _ => ZeroComponents::of_direction(direction, eye).cover(ZeroComponents::of_splitter(splitter, eye)),
-        }
-}
-
-/// True if the normals of three splitters are known to share a zero component.
-pub(crate) fn meet_in_an_axis_plane(splitters: [&Splitter; 3], eye: DVec3) -> bool {
-    ZeroComponents::shared(splitters.map(|s| ZeroComponents::of_splitter(s, eye)))
+    }
 }
 
 /// True if a point is known to lie in a plane.
