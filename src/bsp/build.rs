@@ -5,7 +5,7 @@ use super::fragment::{Bounds, Fragment, FragmentSide, bounds_of, whole_piece};
 use super::skeleton::Skeleton;
 use super::split::{Placement, Splitter};
 use super::{BspStats, Node, SceneBsp, Tree, UncutSliver};
-use crate::scene::{PieceId, PlaneId, PolygonId, Scene};
+use crate::scene::{PieceId, PlaneId, PolygonId, Scene, Side};
 use std::sync::Arc;
 
 /// How a [`SceneBsp`] is built.
@@ -141,15 +141,15 @@ impl Builder {
             let placement = self.splitter.place(&mut self.skeleton, &item.sides, item.own, plane, self.epsilon);
             match placement {
                 Placement::Coplanar { exactly } => {
-                    self.note_sliver(&item, plane, exactly);
+                    self.note_sliver(&item, plane, exactly, None);
                     coplanar.push(item);
                 }
                 Placement::Front { exactly } => {
-                    self.note_sliver(&item, plane, exactly);
+                    self.note_sliver(&item, plane, exactly, Some(Side::Back));
                     front.push(item);
                 }
                 Placement::Back { exactly } => {
-                    self.note_sliver(&item, plane, exactly);
+                    self.note_sliver(&item, plane, exactly, Some(Side::Front));
                     back.push(item);
                 }
                 Placement::Spanning { back: b, front: f } => {
@@ -185,10 +185,10 @@ impl Builder {
         }
     }
 
-    fn note_sliver(&mut self, item: &Item, plane: PlaneId, exactly: bool) {
+    fn note_sliver(&mut self, item: &Item, plane: PlaneId, exactly: bool, beyond: Option<Side>) {
         if !exactly {
             let plane = self.skeleton.plane(plane);
-            self.slivers.push(UncutSliver { polygon: item.polygon, piece: item.piece, plane });
+            self.slivers.push(UncutSliver { polygon: item.polygon, piece: item.piece, plane, beyond });
         }
     }
 

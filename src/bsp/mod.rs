@@ -23,7 +23,7 @@ pub(crate) use fragment::{Bounds, FragmentSide};
 pub(crate) use skeleton::{LineDef, LineId, PointId, Skeleton};
 pub(crate) use traverse::Step;
 
-use crate::scene::{PieceId, PlaneId, PolygonId, Scene};
+use crate::scene::{PieceId, PlaneId, PolygonId, Scene, Side};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -49,6 +49,8 @@ pub struct UncutSliver {
     pub piece: PieceId,
     /// The plane that would have cut it: one of [`Scene::planes`], or an axis-aligned one.
     pub plane: crate::scene::SupportingPlane,
+    /// The side of that plane on which its sliver is; `None` if it was taken to lie in the plane.
+    pub beyond: Option<Side>,
 }
 
 #[derive(Clone, Debug)]

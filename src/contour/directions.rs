@@ -3,7 +3,7 @@
 
 use crate::bsp::{LineDef, LineId, PointId, Skeleton, Tree};
 use crate::exact::{self, Approx3, Arena, Constructor, Frame, Kept3, PredicateStats, Sign, ZeroComponents};
-use crate::scene::{PlaneId, SupportingPlane, VertexId};
+use crate::scene::{PlaneId, Splitter};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -14,20 +14,6 @@ pub(crate) struct CircleId(pub(crate) u32);
 /// A direction of a view.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DirectionId(pub(crate) u32);
-
-/// The exact definition of a splitter: a plane through the eye `e`, by its normal.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Splitter {
-    /// Through two vertices of the scene: `(a - e) x (b - e)`.
-    Edge([VertexId; 2]),
-    /// Through the line where two planes meet: `h_2 N_1 - h_1 N_2` with the planes' normals and the
-    /// heights of the eye over them.
-    Crease([SupportingPlane; 2]),
-    /// A normal given as three numbers: quadtree, horizon of a free hemisphere.
-    Given(DVec3),
-    /// A supporting plane moved to the eye: the horizon of a point on a surface.
-    Parallel(SupportingPlane),
-}
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum CircleDef {
@@ -302,6 +288,10 @@ impl Directions {
     /// The direction as a unit vector.
     pub(crate) fn unit(&self, d: DirectionId) -> DVec3 {
         self.kept[d.0 as usize].approx.v.normalize_or_zero()
+    }
+
+    pub(crate) fn circle_count(&self) -> usize {
+        self.circles.len()
     }
 
     /// The normal of a great circle in floating point: `n . d > 0` is its positive side.

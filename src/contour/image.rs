@@ -1,6 +1,5 @@
 //! The contour image and its cells.
 
-use super::directions::Splitter;
 use super::domain::Domain;
 use super::polygon::PolygonArc;
 use super::tree::{ContourTree, LeafState, Link};
@@ -8,7 +7,7 @@ use super::view::ViewStats;
 use super::viewpoint::Viewpoint;
 use crate::bsp::{FragmentId, SceneBsp};
 use crate::exact::Sign;
-use crate::scene::{PieceId, PolygonId, Side};
+use crate::scene::{PieceId, PolygonId, Side, Splitter};
 use glam::DVec3;
 
 /// A cell of a [`ContourImage`], numbered from 0.

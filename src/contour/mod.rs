@@ -5,6 +5,7 @@
 //! convex: not seen into yet, outside of the domain, or filled with one polygon for good. What is
 //! left open in the end shows the background.
 
+mod certify;
 mod directions;
 mod domain;
 mod image;
@@ -20,7 +21,7 @@ mod viewpoint;
 #[cfg(test)]
 mod tests;
 
-pub use directions::Splitter;
+pub use crate::scene::Splitter;
 pub use domain::Domain;
 pub use image::{Cell, CellId, ContourImage, TreeArc};
 pub use locate::Location;

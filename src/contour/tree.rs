@@ -3,7 +3,7 @@
 use super::directions::{CircleId, DirectionId, Directions};
 use super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
 use crate::bsp::{Bounds, FragmentId, Skeleton};
-use crate::exact::{Sign, U};
+use crate::exact::{SeenBox, Sign};
 use glam::DVec3;
 
 /// A place in the tree: an inner node or a leaf.
@@ -355,14 +355,7 @@ impl ContourTree {
     /// True if nothing in the box can be seen: every leaf that its projection may meet is closed. Errs
     /// only towards false.
     pub(crate) fn hides(&self, eye: DVec3, bounds: &Bounds, work: &mut Workspace) -> bool {
-        let center = (bounds.low + bounds.high) * 0.5 - eye;
-        let half = (bounds.high - bounds.low) * 0.5;
-        // Rounding of the four operations, on coordinates of this size, and of the sums below.
-        let size = eye.abs() + bounds.low.abs() + bounds.high.abs();
-        let margin = 16.0 * U * size.element_sum();
-        if !margin.is_finite() {
-            return false;
-        }
+        let seen = SeenBox::new(eye, bounds.low, bounds.high);
         work.links.clear();
         work.links.push(self.root);
         while let Some(link) = work.links.pop() {
@@ -371,17 +364,10 @@ impl ContourTree {
             }
             let Link::Node(node) = link else { return false };
             let node = &self.nodes[node as usize];
-            let normal = self.directions.normal(node.circle);
-            let height = normal.v.dot(center);
-            let reach = normal.v.abs().dot(half) + 4.0 * margin;
-            // The stored normal is off by `slack / 8` in each component.
-            let reach = reach + normal.slack * (center.abs() + half).element_sum();
-            if height > reach {
-                work.links.push(node.positive);
-            } else if height < -reach {
-                work.links.push(node.negative);
-            } else {
-                work.links.extend([node.negative, node.positive]);
+            match seen.side(self.directions.normal(node.circle)) {
+                Some(Sign::Positive) => work.links.push(node.positive),
+                Some(_) => work.links.push(node.negative),
+                None => work.links.extend([node.negative, node.positive]),
             }
         }
         true

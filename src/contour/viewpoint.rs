@@ -1,7 +1,7 @@
 //! Where one stands.
 
 use crate::bsp::SceneBsp;
-use crate::exact::{ApproxPlane, Plane, Sign, orient3d};
+use crate::exact::{ApproxPlane, Sign, orient3d};
 use crate::scene::{PieceId, PieceRef, PolygonId, Scene, Side, SupportingPlane};
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -163,11 +163,7 @@ fn power_of_two_at_most(x: f64) -> f64 {
 
 /// The unit normal of a piece, to its front.
 fn unit_normal(scene: &Scene, piece: PieceRef<'_>) -> DVec3 {
-    let plane = match piece.plane() {
-        SupportingPlane::Axis { axis, value } => Plane::Axis { axis: axis as usize, value },
-        SupportingPlane::Points(points) => Plane::Points(points.map(|v| scene.vertex(v))),
-    };
-    let normal = ApproxPlane::refined(&plane).normal.v.normalize();
+    let normal = ApproxPlane::refined(&scene.resolve_plane(piece.plane())).normal.v.normalize();
     if piece.facing() == Side::Front { normal } else { -normal }
 }
 

@@ -161,6 +161,11 @@ impl Kernel {
         self.arena.clear();
     }
 
+    /// The normal of a splitter taken in before, in floating point.
+    pub(crate) fn approx_normal(&self, splitter: SplitterId) -> &Approx3 {
+        &self.splitters.approx[splitter.0 as usize]
+    }
+
     fn approx_splitter(&mut self, definition: &Splitter) -> Approx3 {
         let approx = Approx3::splitter(definition, self.eye);
         if !approx.is_poor() {

@@ -11,6 +11,7 @@ mod flat;
 mod material;
 mod problem;
 mod report;
+mod splitter;
 mod triangulate;
 mod validate;
 mod weld;
@@ -19,6 +20,7 @@ pub use builder::{FaceSpec, SceneBuilder};
 pub use material::Material;
 pub use problem::{SceneError, SceneProblem};
 pub use report::{MeshReport, TJunction};
+pub use splitter::Splitter;
 
 use glam::DVec3;
 use std::ops::Range;

@@ -1,0 +1,68 @@
+//! What a contour image claims, handed to the checker.
+
+use super::domain::Domain;
+use super::image::ContourImage;
+use crate::verify::{
+    Arithmetic, Certificate, Defect, Evidence, EvidenceCell, EvidenceDomain, EvidenceSliver, HalfSphere,
+};
+
+impl ContourImage {
+    /// What the image claims, by exact definition. Its cells have the numbers that they have here.
+    pub fn evidence(&self) -> Evidence {
+        let bsp = self.bsp();
+        // Numbered in the order of their first use.
+        let mut numbers = vec![None; self.tree.directions.circle_count()];
+        let mut splitters = Vec::new();
+        let cells = self.cells().map(|cell| {
+            let sides = cell.arcs().iter().map(|arc| {
+                let circle = arc.along.circle();
+                let splitter = *numbers[circle.0 as usize].get_or_insert_with(|| {
+                    splitters.push(self.tree.directions.splitter(&bsp.tree, circle));
+                    splitters.len() as u32 - 1
+                });
+                HalfSphere { splitter, inside: arc.along.inside() }
+            });
+            EvidenceCell { piece: cell.piece(), sides: sides.collect() }
+        });
+        let cells = cells.collect();
+        let slivers = bsp.uncut_slivers().iter().map(|sliver| EvidenceSliver {
+            piece: sliver.piece,
+            plane: sliver.plane,
+            beyond: sliver.beyond,
+        });
+        let domain = match (*self.domain(), self.viewpoint().surface_piece()) {
+            (Domain::Sphere, _) => EvidenceDomain::Sphere,
+            (Domain::Hemisphere(normal), _) => EvidenceDomain::Hemisphere(normal),
+            (Domain::Above, Some((piece, side))) => EvidenceDomain::Above(piece, side),
+            (Domain::Above, None) => unreachable!("such a view is refused"),
+        };
+        Evidence {
+            eye: self.viewpoint().eye(),
+            domain,
+            epsilon: bsp.epsilon(),
+            slivers: slivers.collect(),
+            splitters,
+            cells,
+        }
+    }
+
+    /// Proves that the cells tile the domain and show what is nearest, without trusting the code that made
+    /// them: see [`Evidence::check`].
+    ///
+    /// ```
+    /// # use nusselt::bsp::{BspOptions, SceneBsp};
+    /// # use nusselt::contour::{Domain, Viewpoint};
+    /// let scene = nusselt::samples::cornell_box().to_builder().build()?;
+    /// let bsp = SceneBsp::build(&scene, &BspOptions::default())?;
+    /// let image = bsp.view(&Viewpoint::free(glam::DVec3::new(278.0, 273.0, 1.0)), &Domain::Sphere)?;
+    /// let certificate = image.certify()?;
+    /// assert_eq!(certificate.cells, image.cell_count());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The first defect found: there should be none, so please report it.
+    pub fn certify(&self) -> Result<Certificate, Defect> {
+        self.evidence().check(self.bsp().scene(), Arithmetic::Kernel)
+    }
+}

@@ -1,0 +1,212 @@
+//! What the rules share: the evidence in one arithmetic, with great circles known by identity.
+
+use super::certificate::Certificate;
+use super::defect::{Defect, rounded_crossing};
+use super::evidence::{Evidence, EvidenceDomain, HalfSphere};
+use super::signs::Signs;
+use crate::exact::{Sign, Splitter};
+use crate::scene::{PieceId, Scene, Side};
+use glam::DVec3;
+
+const NONE: u32 = u32::MAX;
+
+pub(super) struct Checker<'a, S> {
+    pub(super) scene: &'a Scene,
+    pub(super) evidence: &'a Evidence,
+    pub(super) signs: S,
+    /// For each splitter the one that stands for its great circle, and how it is oriented against that.
+    circles: Vec<(u32, Sign)>,
+    /// The splitters of the coordinate planes.
+    axes: [u32; 3],
+    /// The horizon, if the domain has one.
+    pub(super) horizon: Option<HalfSphere>,
+    /// The sides of all cells, without those that go on along the great circle of the one before.
+    sides: Vec<HalfSphere>,
+    starts: Vec<usize>,
+    /// The splitter of each edge of the scene, once it was needed.
+    edges: Vec<u32>,
+    /// On which side of each plane of the scene the eye is.
+    pub(super) heights: Vec<Sign>,
+}
+
+impl<'a, S: Signs> Checker<'a, S> {
+    /// Takes in evidence whose form was checked.
+    pub(super) fn new(scene: &'a Scene, evidence: &'a Evidence, mut signs: S) -> Result<Self, Defect> {
+        for splitter in &evidence.splitters {
+            signs.add(&scene.resolve_splitter(*splitter));
+        }
+        for plane in scene.planes() {
+            signs.add_plane(&scene.resolve_plane(*plane));
+        }
+        let heights = (0..scene.planes().len() as u32).map(|plane| signs.height(evidence.eye, plane)).collect();
+        let axes = DVec3::AXES.map(|axis| signs.add(&Splitter::Given(axis)));
+        let mut checker = Self {
+            scene,
+            evidence,
+            signs,
+            circles: Vec::new(),
+            axes,
+            horizon: None,
+            sides: Vec::new(),
+            starts: vec![0],
+            edges: vec![NONE; scene.edges().len()],
+            heights,
+        };
+        checker.horizon = checker.add_horizon()?;
+        let seen = evidence.cells.iter().filter_map(|cell| cell.piece);
+        for piece in seen {
+            for edge in scene.piece(piece).edges() {
+                checker.edge(edge.index());
+            }
+        }
+        checker.circles = checker.signs.great_circles();
+        for cell in &evidence.cells {
+            for (k, &side) in cell.sides.iter().enumerate() {
+                let before = cell.sides[k.checked_sub(1).unwrap_or(cell.sides.len() - 1)];
+                if checker.on_circle(side) != checker.on_circle(before) {
+                    checker.sides.push(side);
+                }
+            }
+            checker.starts.push(checker.sides.len());
+        }
+        Ok(checker)
+    }
+
+    fn add_horizon(&mut self) -> Result<Option<HalfSphere>, Defect> {
+        let (splitter, inside) = match self.evidence.domain {
+            EvidenceDomain::Sphere => return Ok(None),
+            EvidenceDomain::Hemisphere(normal) => (Splitter::Given(normal), Sign::Positive),
+            EvidenceDomain::Above(id, side) => {
+                let piece = self.scene.piece(id);
+                let up = if piece.facing() == side { Sign::Positive } else { Sign::Negative };
+                if self.heights[piece.plane_id().index()] * up == Sign::Negative {
+                    return Err(Defect::BehindSurface { piece: id });
+                }
+                (Splitter::Parallel(self.scene.resolve_plane(piece.plane())), up)
+            }
+        };
+        Ok(Some(HalfSphere { splitter: self.signs.add(&splitter), inside }))
+    }
+
+    /// The splitter of an edge of the scene.
+    fn edge(&mut self, edge: usize) -> u32 {
+        if self.edges[edge] == NONE {
+            let ends = self.scene.edges()[edge].map(|v| self.scene.vertex(v));
+            self.edges[edge] = self.signs.add(&Splitter::Edge(ends));
+        }
+        self.edges[edge]
+    }
+
+    /// The number of cells.
+    pub(super) fn cell_count(&self) -> u32 {
+        self.evidence.cells.len() as u32
+    }
+
+    /// The sides of a cell, no two neighbours on one great circle.
+    pub(super) fn cell(&self, cell: u32) -> &[HalfSphere] {
+        &self.sides[self.starts[cell as usize]..self.starts[cell as usize + 1]]
+    }
+
+    /// The splitter that stands for a side's great circle, and the sign of it that is inside.
+    pub(super) fn on_circle(&self, side: HalfSphere) -> (u32, Sign) {
+        // Splitters taken in later stand for themselves.
+        let (circle, alike) =
+            self.circles.get(side.splitter as usize).copied().unwrap_or((side.splitter, Sign::Positive));
+        (circle, alike * side.inside)
+    }
+
+    /// The sign of `n_1 . (n_2 x n_3)` for the normals to the inside.
+    pub(super) fn orientation(&mut self, sides: [HalfSphere; 3]) -> Sign {
+        let [a, b, c] = sides.map(|side| self.on_circle(side).0);
+        if a == b || b == c || c == a {
+            return Sign::Zero;
+        }
+        let [p, q, r] = sides;
+        self.signs.orientation(sides.map(|side| side.splitter)) * (p.inside * q.inside * r.inside)
+    }
+
+    /// True if two directions that are the same or opposite are the same. Each is given by the circle they
+    /// are on and a normal across: `circle x across`.
+    pub(super) fn is_same_way(&mut self, circle: u32, across: [HalfSphere; 2]) -> bool {
+        let circle = HalfSphere { splitter: circle, inside: Sign::Positive };
+        self.axes.into_iter().any(|axis| {
+            let axis = HalfSphere { splitter: axis, inside: Sign::Positive };
+            let [p, q] = across.map(|side| self.orientation([axis, circle, side]));
+            p * q == Sign::Positive
+        })
+    }
+
+    /// The cone of a piece: one half sphere an edge. The eye is not in its plane.
+    pub(super) fn cone(&mut self, piece: PieceId, out: &mut Vec<HalfSphere>) {
+        out.clear();
+        let piece = self.scene.piece(piece);
+        // `(a - e) x (b - e)` points inwards where the boundary runs from a to b clockwise, seen from the eye.
+        let front_seen = self.shown(piece.id()) == Side::Front;
+        for (edge, from) in piece.edges().iter().zip(piece.vertices()) {
+            let forward = self.scene.edges()[edge.index()][0] == *from;
+            let inside = if forward == front_seen { Sign::Negative } else { Sign::Positive };
+            out.push(HalfSphere { splitter: self.edge(edge.index()), inside });
+        }
+    }
+
+    /// On which side of its plane, as that is oriented, a piece has the eye.
+    pub(super) fn height(&self, piece: PieceId) -> Sign {
+        self.heights[self.scene.piece(piece).plane_id().index()]
+    }
+
+    /// The side that a piece shows to the eye, which is not in its plane.
+    pub(super) fn shown(&self, piece: PieceId) -> Side {
+        let facing = self.scene.piece(piece).facing();
+        if self.height(piece) == Sign::Positive { facing } else { facing.opposite() }
+    }
+
+    /// The corner between two neighbouring sides, rounded.
+    pub(super) fn rounded(&self, [before, after]: [HalfSphere; 2]) -> DVec3 {
+        let normals = [before, after].map(|side| self.signs.rounded(side.splitter));
+        rounded_crossing(normals, [before.inside, after.inside])
+    }
+
+    /// Cuts what is outside of a half sphere off a convex polygon; false if nothing with an interior is left.
+    ///
+    /// A polygon is a cyclic list of half spheres, as a cell is; side `k` runs from corner `k`, where it
+    /// meets side `k - 1`, to corner `k + 1`.
+    pub(super) fn clip(&mut self, polygon: &mut Vec<HalfSphere>, half: HalfSphere) -> bool {
+        let len = polygon.len();
+        let corner = |k: usize| [polygon[if k == 0 { len - 1 } else { k - 1 }], polygon[k]];
+        let signs: Vec<Sign> = (0..len)
+            .map(|k| {
+                let [before, after] = corner(k);
+                self.orientation([before, after, half])
+            })
+            .collect();
+        if !signs.contains(&Sign::Negative) {
+            return true;
+        }
+        // The polygon has an interior, so what touches the inside only from outside has none.
+        let next = |k: usize| if k + 1 == len { 0 } else { k + 1 };
+        let leaves = |k: &usize| signs[*k].is_positive() && !signs[next(*k)].is_positive();
+        let Some(last) = (0..len).find(leaves) else { return false };
+        // What is kept is one run of sides, from where the polygon comes back inside to `last`.
+        let mut kept = vec![half];
+        let mut k = next(last);
+        loop {
+            if signs[k].is_positive() || signs[next(k)].is_positive() {
+                kept.push(polygon[k]);
+            }
+            if k == last {
+                break;
+            }
+            k = next(k);
+        }
+        *polygon = kept;
+        true
+    }
+
+    pub(super) fn certificate(&self, great_circles: usize) -> Certificate {
+        Certificate {
+            cells: self.evidence.cells.len(),
+            great_circles,
+            exact_decisions: self.signs.decisions(),
+        }
+    }
+}

@@ -1,0 +1,217 @@
+//! Rules D and E: every cell shows what is nearest in all of its directions.
+
+use super::boxes::PieceBoxes;
+use super::checker::Checker;
+use super::defect::Defect;
+use super::evidence::{EvidenceSliver, HalfSphere};
+use super::signs::Signs;
+use crate::exact::{Plane, Sign, Splitter};
+use crate::scene::{PieceId, Side};
+use glam::DVec3;
+
+/// Buffers.
+#[derive(Default)]
+struct Work {
+    cone: Vec<HalfSphere>,
+    part: Vec<HalfSphere>,
+}
+
+impl<S: Signs> Checker<'_, S> {
+    /// A hierarchy of the pieces that can be seen at all: those whose plane does not hold the eye.
+    pub(super) fn boxes(&self) -> PieceBoxes {
+        let seen = self.scene.pieces().filter(|piece| !self.heights[piece.plane_id().index()].is_zero());
+        PieceBoxes::new(self.scene, seen.map(|piece| piece.id()))
+    }
+
+    /// D: every cell lies in the cone of the piece that it shows, and background meets no cone.
+    pub(super) fn check_cones(&mut self, boxes: &PieceBoxes) -> Result<(), Defect> {
+        let mut work = Work::default();
+        for cell in 0..self.cell_count() {
+            match self.evidence.cells[cell as usize].piece {
+                Some(piece) => self.check_cone(cell, piece, &mut work)?,
+                None => self.check_background(cell, boxes, &mut work)?,
+            }
+        }
+        Ok(())
+    }
+
+    fn check_cone(&mut self, cell: u32, piece: PieceId, work: &mut Work) -> Result<(), Defect> {
+        if self.height(piece).is_zero() {
+            return Err(Defect::EdgeOn { cell, piece });
+        }
+        self.cone(piece, &mut work.cone);
+        work.part.clear();
+        work.part.extend_from_slice(self.cell(cell));
+        for (k, &after) in work.part.iter().enumerate() {
+            let before = work.part[k.checked_sub(1).unwrap_or(work.part.len() - 1)];
+            for &edge in &work.cone {
+                if self.orientation([before, after, edge]) == Sign::Negative {
+                    return Err(Defect::OutsideCone { cell, piece, towards: self.rounded([before, after]) });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_background(&mut self, cell: u32, boxes: &PieceBoxes, work: &mut Work) -> Result<(), Defect> {
+        let sides = self.cell(cell).to_vec();
+        // Both closures need the checker, one after the other.
+        let checker = std::cell::RefCell::new(self);
+        boxes.visit(
+            |corners| checker.borrow_mut().signs.box_outside(&sides, corners),
+            |piece| {
+                let checker = &mut *checker.borrow_mut();
+                if checker.meets_cone(&sides, piece, work) {
+                    let towards = checker.middle(&work.part);
+                    return Err(Defect::NotBackground { cell, piece, towards });
+                }
+                Ok(())
+            },
+        )
+    }
+
+    /// True if a cell meets the interior of a piece's cone; leaves what they share in `work.part`.
+    fn meets_cone(&mut self, sides: &[HalfSphere], piece: PieceId, work: &mut Work) -> bool {
+        work.part.clear();
+        work.part.extend_from_slice(sides);
+        self.cone(piece, &mut work.cone);
+        work.cone.iter().all(|&edge| self.clip(&mut work.part, edge))
+    }
+
+    /// E: no other piece is in front of the one that a cell shows, in any of the cell's directions.
+    pub(super) fn check_depth(&mut self, boxes: &PieceBoxes) -> Result<(), Defect> {
+        let mut work = Work::default();
+        for cell in 0..self.cell_count() {
+            let Some(piece) = self.evidence.cells[cell as usize].piece else { continue };
+            let sides = self.cell(cell).to_vec();
+            let plane = self.scene.piece(piece).plane_id().0;
+            let away = -self.height(piece);
+            let checker = std::cell::RefCell::new(&mut *self);
+            boxes.visit(
+                |corners| {
+                    let signs = &mut checker.borrow_mut().signs;
+                    signs.box_outside(&sides, corners) || signs.box_beyond(plane, away, corners)
+                },
+                |other| {
+                    let checker = &mut *checker.borrow_mut();
+                    if other != piece && checker.is_in_front(other, piece, &sides, &mut work) {
+                        let towards = checker.middle(&work.part);
+                        return Err(Defect::Hidden { cell, piece, by: other, towards });
+                    }
+                    Ok(())
+                },
+            )?;
+        }
+        Ok(())
+    }
+
+    /// True if `other` is in front of the piece that a cell shows, somewhere in that cell and without an
+    /// excuse; leaves in `work.part` where.
+    fn is_in_front(&mut self, other: PieceId, piece: PieceId, sides: &[HalfSphere], work: &mut Work) -> bool {
+        let crease = match self.places(other, piece) {
+            // Seen from the near side of a plane, what is nowhere nearer than the plane is not in front of it.
+            Places { nearer: false, beyond: true } => return false,
+            Places { nearer: false, beyond: false } if !self.wins(other, piece) => return false,
+            Places { nearer: false, beyond: false } => None,
+            // Nor is something in front if all of the piece is nearer than its plane.
+            Places { nearer: true, .. } if !self.places(piece, other).beyond => return false,
+            Places { nearer: true, .. } => Some(self.nearer(other, piece)),
+        };
+        self.meets_cone(sides, other, work)
+            && crease.is_none_or(|half| self.clip(&mut work.part, half))
+            && !(self.is_excused(piece, work) || self.is_excused(other, work))
+    }
+
+    /// Where the corners of one piece are against the plane of another, seen from the eye.
+    fn places(&mut self, of: PieceId, against: PieceId) -> Places {
+        let near = self.height(against);
+        let (piece, plane) = (self.scene.piece(of), self.scene.piece(against).plane_id());
+        let mut places = Places { nearer: false, beyond: false };
+        if piece.plane_id() == plane {
+            return places;
+        }
+        for corner in piece.points() {
+            let sign = self.signs.height(corner, plane.0) * near;
+            places.nearer |= sign.is_positive();
+            places.beyond |= sign.is_negative();
+        }
+        places
+    }
+
+    /// Of two coplanar pieces, the one that shows its front is seen, then the one of the lowest number.
+    fn wins(&self, other: PieceId, piece: PieceId) -> bool {
+        (self.shown(other) == Side::Back, other) < (self.shown(piece) == Side::Back, piece)
+    }
+
+    /// The directions in which the plane of `other` is nearer than that of `piece`: for heights above 0,
+    /// `-h / (N . d)` is the distance along d, and `h_other N_piece - h_piece N_other` is positive there.
+    fn nearer(&mut self, other: PieceId, piece: PieceId) -> HalfSphere {
+        let planes = [piece, other].map(|id| self.scene.resolve_plane(self.scene.piece(id).plane()));
+        let inside = self.height(piece) * self.height(other);
+        HalfSphere { splitter: self.signs.add(&Splitter::Crease(planes)), inside }
+    }
+
+    /// True if the slivers recorded of a piece are all that the piece shows in `work.part`; else leaves there what is
+    /// not excused.
+    fn is_excused(&mut self, piece: PieceId, work: &mut Work) -> bool {
+        let slivers = &self.evidence.slivers;
+        slivers.iter().filter(|sliver| sliver.piece == piece).any(|sliver| self.cut_sliver(sliver, &mut work.part))
+    }
+
+    /// Cuts off what is seen of a piece through a recorded sliver; true if nothing is left.
+    fn cut_sliver(&mut self, sliver: &EvidenceSliver, part: &mut Vec<HalfSphere>) -> bool {
+        let own = self.scene.resolve_plane(self.scene.piece(sliver.piece).plane());
+        let plane = self.scene.resolve_plane(sliver.plane);
+        let splitter = self.signs.add(&Splitter::Crease([own, plane]));
+        let height = self.height(sliver.piece);
+        // On the piece, the part in front of the plane is where the crease has the sign opposite to the height.
+        let front = HalfSphere { splitter, inside: -height };
+        let back = HalfSphere { splitter, inside: height };
+        let mut excused = part.clone();
+        let (is_there, rest) = match sliver.beyond {
+            None => (true, None),
+            Some(Side::Front) => (self.clip(&mut excused, front), Some(back)),
+            Some(Side::Back) => (self.clip(&mut excused, back), Some(front)),
+        };
+        if !is_there || !self.is_within_epsilon(&excused, &own, &plane) {
+            return false;
+        }
+        rest.is_none_or(|half| !self.clip(part, half))
+    }
+
+    /// True if a polygon's corners, put on a plane, are no further than epsilon from another plane.
+    ///
+    /// In floating point, as the splitter measures it, on corners that are rounded: so up to 1e-9 of the
+    /// scene's size, or of epsilon, is allowed on top.
+    fn is_within_epsilon(&self, part: &[HalfSphere], own: &Plane, plane: &Plane) -> bool {
+        let limit = self.evidence.epsilon * (1.0 + 1e-9) + 1e-9 * self.scene.diagonal();
+        let ([n, a], [m, b]) = (rounded_plane(own), rounded_plane(plane));
+        let eye = self.evidence.eye;
+        (0..part.len()).all(|k| {
+            let d = self.rounded([part[k.checked_sub(1).unwrap_or(part.len() - 1)], part[k]]);
+            let point = eye + d * (n.dot(a - eye) / n.dot(d));
+            self.evidence.epsilon > 0.0 && m.dot(point - b).abs() <= limit
+        })
+    }
+
+    /// A direction inside of a polygon, rounded.
+    fn middle(&self, part: &[HalfSphere]) -> DVec3 {
+        let corner = |k: usize| self.rounded([part[k.checked_sub(1).unwrap_or(part.len() - 1)], part[k]]);
+        (0..part.len()).map(corner).sum::<DVec3>().normalize_or_zero()
+    }
+}
+
+/// Whether some corner of a piece is nearer than a plane, or beyond it; neither if it lies in the plane.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Places {
+    nearer: bool,
+    beyond: bool,
+}
+
+/// A unit normal and a point of a plane.
+fn rounded_plane(plane: &Plane) -> [DVec3; 2] {
+    match *plane {
+        Plane::Axis { axis, value } => [DVec3::AXES[axis], DVec3::AXES[axis] * value],
+        Plane::Points([a, b, c]) => [(b - a).cross(c - a).normalize_or_zero(), a],
+    }
+}

@@ -1,0 +1,210 @@
+//! Signs from `num-rational` alone: slow, and without a line in common with the engine.
+//!
+//! Coordinates become rational numbers, normals and planes are computed from them as the definitions say,
+//! and each vector is then multiplied by what makes it whole and free of common factors. Nothing is filtered
+//! and nothing is rounded.
+
+use super::evidence::HalfSphere;
+use super::signs::Signs;
+use crate::exact::{Plane, Sign, Splitter};
+use crate::scene::Scene;
+use glam::DVec3;
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_rational::BigRational;
+use num_traits::{Signed, ToPrimitive, Zero};
+use std::collections::HashMap;
+
+type Vector<T> = [T; 3];
+
+/// Exact vectors of all that was taken in.
+pub(super) struct RationalSigns {
+    eye: Vector<BigRational>,
+    /// A number that makes every coordinate whole.
+    scale: BigInt,
+    /// Whole multiples of the normals.
+    normals: Vec<Vector<BigInt>>,
+    planes: Vec<RationalPlane>,
+    decisions: u64,
+}
+
+/// `N . p >= c` in front.
+struct RationalPlane {
+    normal: Vector<BigRational>,
+    offset: BigRational,
+}
+
+impl RationalPlane {
+    fn new(plane: &Plane) -> Self {
+        match plane {
+            Plane::Axis { axis, value } => {
+                let mut normal = [(); 3].map(|()| BigRational::zero());
+                normal[*axis] = BigRational::from_integer(1.into());
+                Self { normal, offset: rational(*value) }
+            }
+            Plane::Points(points) => {
+                let [a, b, c] = points.map(exact);
+                let normal = cross(&minus(&b, &a), &minus(&c, &a));
+                let offset = dot(&normal, &a);
+                Self { normal, offset }
+            }
+        }
+    }
+
+    fn height(&self, point: &Vector<BigRational>) -> BigRational {
+        dot(&self.normal, point) - &self.offset
+    }
+}
+
+impl RationalSigns {
+    pub(super) fn new(scene: &Scene, eye: DVec3) -> Self {
+        let coordinates = scene.vertices().iter().copied().chain([eye]).flat_map(|p| p.to_array());
+        let scale = coordinates.fold(BigInt::from(1), |scale, x| scale.lcm(rational(x).denom()));
+        Self { eye: exact(eye), scale, normals: Vec::new(), planes: Vec::new(), decisions: 0 }
+    }
+
+    fn normal(&self, splitter: &Splitter) -> Vector<BigRational> {
+        match splitter {
+            Splitter::Edge(ends) => {
+                let [a, b] = ends.map(|p| minus(&exact(p), &self.eye));
+                cross(&a, &b)
+            }
+            Splitter::Crease(planes) => {
+                let [p, q] = planes.map(|plane| RationalPlane::new(&plane));
+                let (h, g) = (p.height(&self.eye), q.height(&self.eye));
+                [0, 1, 2].map(|k| &g * &p.normal[k] - &h * &q.normal[k])
+            }
+            Splitter::Given(normal) => exact(*normal),
+            Splitter::Parallel(plane) => RationalPlane::new(plane).normal,
+        }
+    }
+
+    fn decide(&mut self, sign: Sign) -> Sign {
+        self.decisions += 1;
+        sign
+    }
+}
+
+impl Signs for RationalSigns {
+    fn add(&mut self, splitter: &Splitter) -> u32 {
+        self.normals.push(whole(&self.normal(splitter)));
+        self.normals.len() as u32 - 1
+    }
+
+    fn add_plane(&mut self, plane: &Plane) -> u32 {
+        self.planes.push(RationalPlane::new(plane));
+        self.planes.len() as u32 - 1
+    }
+
+    fn orientation(&mut self, splitters: [u32; 3]) -> Sign {
+        let [a, b, c] = splitters.map(|s| &self.normals[s as usize]);
+        let sign = sign_of(&dot(a, &cross(b, c)));
+        self.decide(sign)
+    }
+
+    fn side(&mut self, direction: DVec3, splitter: u32) -> Sign {
+        let sign = sign_of(&dot(&self.normals[splitter as usize], &whole(&exact(direction))));
+        self.decide(sign)
+    }
+
+    fn height(&mut self, point: DVec3, plane: u32) -> Sign {
+        let sign = sign_of(&self.planes[plane as usize].height(&exact(point)));
+        self.decide(sign)
+    }
+
+    /// Whole vectors without common factors are equal or opposite where their great circles are one.
+    fn great_circles(&mut self) -> Vec<(u32, Sign)> {
+        let mut firsts: HashMap<&Vector<BigInt>, u32> = HashMap::new();
+        let mut circles = Vec::with_capacity(self.normals.len());
+        for (k, normal) in (0..).zip(&self.normals) {
+            let opposite = normal.clone().map(|x| -x);
+            let known = match (firsts.get(normal), firsts.get(&opposite)) {
+                (Some(&first), _) => Some((first, Sign::Positive)),
+                (None, Some(&first)) => Some((first, Sign::Negative)),
+                (None, None) => None,
+            };
+            circles.push(known.filter(|_| !normal.iter().all(Zero::is_zero)).unwrap_or_else(|| {
+                firsts.insert(normal, k);
+                (k, Sign::Positive)
+            }));
+        }
+        self.decisions += circles.len() as u64;
+        circles
+    }
+
+    fn box_outside(&mut self, sides: &[HalfSphere], corners: [DVec3; 2]) -> bool {
+        let scaled = |x: &BigRational| x.numer() * (&self.scale / x.denom());
+        let eye = [0, 1, 2].map(|k| scaled(&self.eye[k]));
+        let [low, high] = corners.map(|corner| [0, 1, 2].map(|k| scaled(&rational(corner[k])) - &eye[k]));
+        sides.iter().any(|side| {
+            let normal = &self.normals[side.splitter as usize];
+            // The corner that lies furthest on the inside.
+            let terms = [0, 1, 2].map(|k| {
+                let up = normal[k].is_positive() == side.inside.is_positive();
+                &normal[k] * if up { &high[k] } else { &low[k] }
+            });
+            sign_of(&terms.into_iter().sum::<BigInt>()) * side.inside != Sign::Positive
+        })
+    }
+
+    fn box_beyond(&mut self, plane: u32, side: Sign, [low, high]: [DVec3; 2]) -> bool {
+        let plane = &self.planes[plane as usize];
+        // The corner that lies furthest on the other side.
+        let corner = [0, 1, 2].map(|k| {
+            let up = plane.normal[k].is_negative() == side.is_positive();
+            rational(if up { high[k] } else { low[k] })
+        });
+        sign_of(&plane.height(&corner)) * side != Sign::Negative
+    }
+
+    fn rounded(&self, splitter: u32) -> DVec3 {
+        let normal = &self.normals[splitter as usize];
+        // Divided by what the largest component is close to, each fits an f64.
+        let bits = normal.iter().map(BigInt::bits).max().unwrap_or(0).saturating_sub(64);
+        DVec3::from([0, 1, 2].map(|k| (&normal[k] >> bits).to_f64().unwrap_or(0.0)))
+    }
+
+    fn decisions(&self) -> u64 {
+        self.decisions
+    }
+}
+
+fn rational(x: f64) -> BigRational {
+    BigRational::from_float(x).unwrap_or_else(BigRational::zero)
+}
+
+fn exact(v: DVec3) -> Vector<BigRational> {
+    v.to_array().map(rational)
+}
+
+/// The multiple of a vector, by a positive factor, that is whole and has no common divisor.
+fn whole(v: &Vector<BigRational>) -> Vector<BigInt> {
+    let denominator = v.iter().fold(BigInt::from(1), |all, x| all.lcm(x.denom()));
+    let whole = [0, 1, 2].map(|k| v[k].numer() * (&denominator / v[k].denom()));
+    let divisor = whole.iter().fold(BigInt::zero(), |all, x| all.gcd(x));
+    if divisor.is_zero() { whole } else { whole.map(|x| x / &divisor) }
+}
+
+fn minus(a: &Vector<BigRational>, b: &Vector<BigRational>) -> Vector<BigRational> {
+    [0, 1, 2].map(|k| &a[k] - &b[k])
+}
+
+fn cross<T>(a: &Vector<T>, b: &Vector<T>) -> Vector<T>
+where
+    T: std::ops::Sub<Output = T>,
+    for<'a> &'a T: std::ops::Mul<Output = T>,
+{
+    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &a[i] * &b[j] - &a[j] * &b[i])
+}
+
+fn dot<T>(a: &Vector<T>, b: &Vector<T>) -> T
+where
+    T: std::ops::Add<Output = T>,
+    for<'a> &'a T: std::ops::Mul<Output = T>,
+{
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+fn sign_of<T: Zero + PartialOrd>(x: &T) -> Sign {
+    x.partial_cmp(&T::zero()).map_or(Sign::Zero, Sign::from)
+}

@@ -1,0 +1,228 @@
+//! Rules A, B and C: the cells tile the domain, with no gap and no overlap.
+
+use super::checker::Checker;
+use super::defect::Defect;
+use super::evidence::{EvidenceDomain, HalfSphere};
+use super::signs::Signs;
+use crate::exact::Sign;
+use crate::scene::Splitter;
+use glam::DVec3;
+use std::cmp::Ordering;
+
+/// A side of a cell on a great circle, counter-clockwise about the normal that stands for the circle.
+struct Arc {
+    circle: u32,
+    cell: u32,
+    /// Its ends: each is `circle x across`.
+    ends: [HalfSphere; 2],
+    /// The cell lies to the left of it (1) or to the right (-1).
+    count: i64,
+}
+
+/// An end of an arc, as it is sorted.
+#[derive(Clone, Copy)]
+struct End {
+    across: HalfSphere,
+    arc: usize,
+    is_start: bool,
+    /// Half turns from the first end: at 0, within the first, at 1, within the second.
+    half: u8,
+}
+
+impl<S: Signs> Checker<'_, S> {
+    /// Rules A to C. Gives the number of great circles.
+    pub(super) fn check_tiling(&mut self) -> Result<usize, Defect> {
+        for cell in 0..self.cell_count() {
+            self.check_convex(cell)?;
+        }
+        let circles = self.check_balance()?;
+        self.check_witness()?;
+        Ok(circles)
+    }
+
+    /// A: all corners but its own two lie strictly inside of every side.
+    fn check_convex(&mut self, cell: u32) -> Result<(), Defect> {
+        let sides = self.cell(cell).to_vec();
+        let not_convex = |corner: usize, side: usize| Defect::NotConvex { cell, corner: corner as u32, side: side as u32 };
+        if sides.len() < 3 {
+            return Err(not_convex(0, 0));
+        }
+        for (k, &before) in sides.iter().enumerate() {
+            let corner = (k + 1) % sides.len();
+            for (j, &side) in sides.iter().enumerate() {
+                if j != k && j != corner && self.orientation([side, before, sides[corner]]) != Sign::Positive {
+                    return Err(not_convex(corner, j));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// B: on every stretch of every great circle as many cells lie to the left as to the right, but for the
+    /// horizon, which has one more on the inside all around.
+    fn check_balance(&mut self) -> Result<usize, Defect> {
+        let mut arcs = self.arcs();
+        arcs.sort_by_key(|arc| arc.circle);
+        let horizon = self.horizon.map(|half| self.on_circle(half));
+        if let Some((circle, inside)) = horizon
+            && arcs.binary_search_by_key(&circle, |arc| arc.circle).is_err()
+        {
+            let axes = [DVec3::X, DVec3::NEG_X];
+            return Err(self.unbalanced(circle, axes, 0, inside as i64, Vec::new()));
+        }
+        let mut circles = 0;
+        for on_circle in arcs.chunk_by(|a, b| a.circle == b.circle) {
+            let circle = on_circle[0].circle;
+            let expected = horizon.filter(|horizon| horizon.0 == circle).map_or(0, |horizon| horizon.1 as i64);
+            self.check_circle(circle, on_circle, expected)?;
+            circles += 1;
+        }
+        Ok(circles)
+    }
+
+    /// A side of a cell with the inward normal `n` runs from `n x (-n_before)` to `n x n_after`.
+    fn arcs(&self) -> Vec<Arc> {
+        let mut arcs = Vec::new();
+        for cell in 0..self.cell_count() {
+            let sides = self.cell(cell);
+            for (k, &side) in sides.iter().enumerate() {
+                let (circle, inside) = self.on_circle(side);
+                let before = sides[k.checked_sub(1).unwrap_or(sides.len() - 1)];
+                let after = sides[(k + 1) % sides.len()];
+                let from = HalfSphere { inside: -(inside * before.inside), ..before };
+                let to = HalfSphere { inside: inside * after.inside, ..after };
+                let ends = if inside.is_positive() { [from, to] } else { [to, from] };
+                arcs.push(Arc { circle, cell, ends, count: inside as i64 });
+            }
+        }
+        arcs
+    }
+
+    fn check_circle(&mut self, circle: u32, arcs: &[Arc], expected: i64) -> Result<(), Defect> {
+        let first = arcs[0].ends[0];
+        let mut ends = Vec::with_capacity(2 * arcs.len());
+        for (arc, own) in arcs.iter().enumerate() {
+            for (&across, is_start) in own.ends.iter().zip([true, false]) {
+                let half = match self.ahead(circle, first, across) {
+                    Sign::Positive => 1,
+                    Sign::Negative => 3,
+                    Sign::Zero if self.is_same_way(circle, [first, across]) => 0,
+                    Sign::Zero => 2,
+                };
+                ends.push(End { across, arc, is_start, half });
+            }
+        }
+        ends.sort_by(|a, b| self.compare_ends(circle, a, b));
+        // The number of the place of each end; equal ends share one.
+        let mut places = vec![[0; 2]; arcs.len()];
+        let mut place = 0;
+        let mut previous = None;
+        let mut deltas: Vec<(HalfSphere, i64)> = Vec::new();
+        for end in &ends {
+            let is_new = previous.is_none_or(|before| self.compare_ends(circle, &before, end) != Ordering::Equal);
+            if is_new {
+                place = deltas.len();
+                deltas.push((end.across, 0));
+            }
+            let count = arcs[end.arc].count;
+            deltas[place].1 += if end.is_start { count } else { -count };
+            places[end.arc][usize::from(!end.is_start)] = place;
+            previous = Some(*end);
+        }
+        // An arc is less than half a turn long, so one that ends at a lower place than it starts at passes the
+        // stretch before the first place.
+        let wraps = |arc: usize| places[arc][0] > places[arc][1];
+        let mut count: i64 = (0..arcs.len()).filter(|&arc| wraps(arc)).map(|arc| arcs[arc].count).sum();
+        for (k, &(across, delta)) in deltas.iter().enumerate() {
+            count += delta;
+            if count != expected {
+                let next = deltas[(k + 1) % deltas.len()].0;
+                let circle_side = HalfSphere { splitter: circle, inside: Sign::Positive };
+                let stretch = [across, next].map(|end| self.rounded([circle_side, end]));
+                let covers = |arc: usize| {
+                    let [from, to] = places[arc];
+                    if from < to { (from..to).contains(&k) } else { k >= from || k < to }
+                };
+                let cells = (0..arcs.len()).filter(|&arc| covers(arc)).map(|arc| arcs[arc].cell).collect();
+                return Err(self.unbalanced(circle, stretch, count, expected, cells));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the direction `circle x q` is less than half a turn ahead of `circle x p`, or behind.
+    fn ahead(&mut self, circle: u32, p: HalfSphere, q: HalfSphere) -> Sign {
+        self.orientation([HalfSphere { splitter: circle, inside: Sign::Positive }, p, q])
+    }
+
+    fn compare_ends(&mut self, circle: u32, a: &End, b: &End) -> Ordering {
+        // Within a half turn no two directions are opposite.
+        a.half.cmp(&b.half).then_with(|| match a.half {
+            0 | 2 => Ordering::Equal,
+            _ if a.across == b.across => Ordering::Equal,
+            _ => match self.ahead(circle, a.across, b.across) {
+                Sign::Positive => Ordering::Less,
+                Sign::Zero => Ordering::Equal,
+                Sign::Negative => Ordering::Greater,
+            },
+        })
+    }
+
+    fn unbalanced(&self, circle: u32, stretch: [DVec3; 2], count: i64, expected: i64, cells: Vec<u32>) -> Defect {
+        // A circle that no splitter of the evidence is on is that of the horizon.
+        let circle = match (self.evidence.splitters.get(circle as usize), self.evidence.domain) {
+            (Some(&splitter), _) => splitter,
+            (None, EvidenceDomain::Above(piece, _)) => Splitter::Parallel(self.scene.piece(piece).plane()),
+            (None, EvidenceDomain::Hemisphere(normal)) => Splitter::Given(normal),
+            (None, EvidenceDomain::Sphere) => Splitter::Given(self.signs.rounded(circle)),
+        };
+        Defect::Unbalanced { circle, stretch, count, expected, cells }
+    }
+
+    /// C: a direction off all great circles lies in one cell, or in none if it is outside of the domain.
+    fn check_witness(&mut self) -> Result<(), Defect> {
+        let used: Vec<u32> = {
+            let cells = (0..self.cell_count()).flat_map(|cell| self.cell(cell));
+            let mut used: Vec<u32> = cells.chain(&self.horizon).map(|side| side.splitter).collect();
+            used.sort_unstable();
+            used.dedup();
+            used
+        };
+        for direction in candidates() {
+            let mut signs = vec![Sign::Zero; used.last().map_or(0, |&last| last as usize + 1)];
+            for &splitter in &used {
+                signs[splitter as usize] = self.signs.side(direction, splitter);
+                if signs[splitter as usize].is_zero() {
+                    break;
+                }
+            }
+            if used.iter().any(|&splitter| signs[splitter as usize].is_zero()) {
+                continue;
+            }
+            let inside = |side: &HalfSphere| signs[side.splitter as usize] == side.inside;
+            let cells: Vec<u32> =
+                (0..self.cell_count()).filter(|&cell| self.cell(cell).iter().all(inside)).collect();
+            let expected = usize::from(self.horizon.as_ref().is_none_or(inside));
+            return if cells.len() == expected {
+                Ok(())
+            } else {
+                Err(Defect::Covered { direction, cells, expected })
+            };
+        }
+        // No splitter of a convex cell has a normal of 0, so a few thousand great circles would have to be
+        // aimed at all candidates.
+        Err(Defect::Malformed { place: "witness".to_owned(), what: "every direction tried lies on a great circle" })
+    }
+}
+
+/// Directions of small whole numbers in no particular order.
+fn candidates() -> impl Iterator<Item = DVec3> {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut next = move || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        ((state >> 32) % 2_000_003) as f64 - 1_000_001.0
+    };
+    (0..64).map(move |_| DVec3::new(next(), next(), next()))
+}
