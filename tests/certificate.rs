@@ -5,7 +5,7 @@ use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::contour::{ContourImage, Domain, Viewpoint};
 use nusselt::samples::{self, Kind};
 use nusselt::scene::{PolygonId, Scene, Side};
-use nusselt::verify::{Arithmetic, Extent};
+use nusselt::verify::Arithmetic;
 
 fn image(scene: &Scene, viewpoint: &Viewpoint, domain: &Domain) -> ContourImage {
     let bsp = SceneBsp::build(scene, &BspOptions::default()).expect("epsilon is 0");
@@ -29,38 +29,16 @@ fn generated_scenes_are_proved_in_both_arithmetics() {
             ] {
                 let image = image(&scene, &Viewpoint::free(eye), &domain);
                 let evidence = image.evidence();
-                let fast = evidence.check(&scene, Arithmetic::Kernel).unwrap_or_else(|defect| panic!("{kind:?} {defect}"));
-                let slow = evidence.check(&scene, Arithmetic::Rational).unwrap_or_else(|defect| panic!("{kind:?} {defect}"));
+                let fast =
+                    evidence.check(&scene, Arithmetic::Kernel).unwrap_or_else(|defect| panic!("{kind:?} {defect}"));
+                let slow =
+                    evidence.check(&scene, Arithmetic::Rational).unwrap_or_else(|defect| panic!("{kind:?} {defect}"));
                 assert_eq!((fast.cells, fast.great_circles), (slow.cells, slow.great_circles));
                 assert_eq!(fast.cells, image.cell_count());
             }
             let polygon = PolygonId(scene.polygon_count() as u32 / 3);
             let viewpoint = Viewpoint::on_surface(&scene, polygon, Side::Front, DVec3::ZERO).unwrap();
             image(&scene, &viewpoint, &Domain::Above).certify().unwrap();
-        }
-    }
-}
-
-#[test]
-#[ignore = "timing"]
-fn timing() {
-    for kind in [Kind::Room, Kind::Office, Kind::City] {
-        for size in [1000, 10_000, 50_000] {
-            let scene = samples::generate(kind, size, 1).unwrap().to_builder().build().unwrap();
-            let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
-            let eye = inside(&scene, 0.31, 0.42, 0.5);
-            let now = std::time::Instant::now();
-            let image = bsp.view(&Viewpoint::free(eye), &Domain::Hemisphere(DVec3::Z)).unwrap();
-            let view = now.elapsed();
-            let now = std::time::Instant::now();
-            let evidence = image.evidence();
-            let make = now.elapsed();
-            let times = [Extent::Tiling, Extent::Cones, Extent::All].map(|extent| {
-                let now = std::time::Instant::now();
-                let c = evidence.check_to(&scene, Arithmetic::Kernel, extent).unwrap();
-                (now.elapsed(), c.exact_decisions)
-            });
-            println!("{kind:?} {size} cells {} view {view:?} evidence {make:?} {times:?}", evidence.cells.len());
         }
     }
 }

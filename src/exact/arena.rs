@@ -253,6 +253,29 @@ impl Arena {
         }
     }
 
+    /// [`Arena::parallel`] for vectors that were kept.
+    pub(crate) fn kept_parallel(&mut self, a: &Kept3, b: &Kept3) -> Sign {
+        macro_rules! fixed {
+            ($w:literal) => {
+                fixed::parallel::<$w, { 2 * $w - 1 }>(&self.digits(a), &self.digits(b))
+            };
+        }
+        match a.width.max(b.width) as usize {
+            0..=2 => fixed!(2),
+            3 => fixed!(3),
+            4 => fixed!(4),
+            5..=8 => fixed!(8),
+            9..=fixed::MOST_DIGITS => fixed!(12),
+            _ => {
+                let mark = self.mark();
+                let [a, b] = [a, b].map(|v| self.numbers(v));
+                let sign = self.parallel(a, b);
+                self.release(mark);
+                sign
+            }
+        }
+    }
+
     #[cold]
     fn wide_dot_sign(&mut self, a: Num3, b: Num3) -> Sign {
         self.arbitrary += 1;
@@ -602,6 +625,7 @@ mod tests {
                 }
                 for (w, kept_w) in &kept {
                     prop_assert_eq!(arena.kept_dot_sign(kept_v, kept_w), arena.dot_sign(*v, *w));
+                    prop_assert_eq!(arena.kept_parallel(kept_v, kept_w), arena.parallel(*v, *w));
                     let cross = arena.cross(*v, *w);
                     let (exact, approx) = (Approx3::rounded(&arena, cross), arena.kept_cross(kept_v, kept_w));
                     let off = (exact.v - approx.v).abs().max_element();

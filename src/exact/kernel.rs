@@ -12,7 +12,7 @@ use super::construct::Constructor;
 use super::definition::{Direction, Plane, Point, Splitter};
 use super::frame::{BitRange, Frame};
 use super::orient::{orient3d_expansions, orient3d_filter};
-use super::zeros::{ZeroComponents, defined_on, point_in_plane};
+use super::zeros::{ZeroComponents, defined_on, have_common_end, point_in_plane};
 use super::{PredicateStats, Sign};
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -26,6 +26,17 @@ pub enum CircleRelation {
     Opposite,
     /// Different circles.
     Different,
+}
+
+impl CircleRelation {
+    /// From the sign of the dot product of parallel normals; 0 for others.
+    fn of(parallel: Sign) -> Self {
+        match parallel {
+            Sign::Positive => Self::Same,
+            Sign::Negative => Self::Opposite,
+            Sign::Zero => Self::Different,
+        }
+    }
 }
 
 /// Where a direction lies on a great circle, seen from another one on it.
@@ -263,7 +274,8 @@ impl Kernel {
             self.stats.filter += 1;
             return sign;
         }
-        if ZeroComponents::shared(splitters.map(|s| ZeroComponents::of_splitter(s, self.eye))) {
+        let zeros = splitters.map(|s| ZeroComponents::of_splitter(s, self.eye));
+        if ZeroComponents::shared(zeros) || have_common_end(splitters) {
             self.stats.identity += 1;
             return Sign::Zero;
         }
@@ -295,7 +307,8 @@ impl Kernel {
         // Of definitions taken in twice, integers find that they are the same.
         let [a, b, c] = splitters;
         let zeros = splitters.map(|s| self.splitters.zeros[s.0 as usize]);
-        if a == b || b == c || c == a || ZeroComponents::shared(zeros) {
+        let known = |s: SplitterId| &self.splitters.definitions[s.0 as usize];
+        if a == b || b == c || c == a || ZeroComponents::shared(zeros) || have_common_end(splitters.map(known)) {
             self.stats.identity += 1;
             return Sign::Zero;
         }
@@ -354,15 +367,32 @@ impl Kernel {
             return CircleRelation::Different;
         }
         let range = range_of_splitter(range_of_splitter(self.range, a), b);
-        let sign = self.decide(range, |exact| {
+        CircleRelation::of(self.decide(range, |exact| {
             let (m, n) = (exact.splitter(a), exact.splitter(b));
             exact.arena.parallel(m, n)
-        });
-        match sign {
-            Sign::Positive => CircleRelation::Same,
-            Sign::Negative => CircleRelation::Opposite,
-            Sign::Zero => CircleRelation::Different,
+        }))
+    }
+
+    /// The same for splitters taken in before.
+    pub fn compare_circles_of(&mut self, a: SplitterId, b: SplitterId) -> CircleRelation {
+        if a == b {
+            self.stats.identity += 1;
+            return CircleRelation::Same;
         }
+        let [p, q] = [a, b].map(|s| &self.splitters.approx[s.0 as usize]);
+        if p.not_parallel(q) {
+            self.stats.filter += 1;
+            return CircleRelation::Different;
+        }
+        self.make_splitter(a);
+        self.make_splitter(b);
+        let [Some(a), Some(b)] = [a, b].map(|s| self.splitters.exact[s.0 as usize].as_ref()) else {
+            unreachable!("both were made")
+        };
+        let arbitrary = self.arena.arbitrary_signs();
+        let sign = self.arena.kept_parallel(a, b);
+        self.count_stage(arbitrary);
+        CircleRelation::of(sign)
     }
 
     /// Where `other` lies on a great circle, seen from `from`; both must lie on it.

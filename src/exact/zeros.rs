@@ -86,6 +86,12 @@ pub(crate) fn defined_on(direction: &Direction, splitter: &Splitter) -> bool {
     }
 }
 
+/// True if three splitters pass through one point that is an end of three edges: they meet in its direction.
+pub(crate) fn have_common_end(splitters: [&Splitter; 3]) -> bool {
+    let [Splitter::Edge(a), Splitter::Edge(b), Splitter::Edge(c)] = splitters else { return false };
+    a.iter().any(|end| b.contains(end) && c.contains(end))
+}
+
 /// True if a point is known to lie in a plane.
 pub(crate) fn point_in_plane(point: &Point, plane: &Plane) -> bool {
     match (point, plane) {

@@ -27,7 +27,7 @@ pub(super) struct PieceBoxes {
 }
 
 impl PieceBoxes {
-    /// A hierarchy of those pieces: halved along the longest side until few are left.
+    /// A hierarchy of those pieces, each node cut where the areas of its parts, times what they hold, are least.
     pub(super) fn new(scene: &Scene, pieces: impl IntoIterator<Item = PieceId>) -> Self {
         let corners = |id: PieceId| {
             let points = scene.piece(id).points();
@@ -45,19 +45,19 @@ impl PieceBoxes {
                 boxes.nodes[parent].second = here as u32;
             }
             let part = &mut boxes.pieces[first..end];
-            let corners = part.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |all, (_, own)| {
-                [all[0].min(own[0]), all[1].max(own[1])]
-            });
+            let corners = part
+                .iter()
+                .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |all, (_, own)| [all[0].min(own[0]), all[1].max(own[1])]);
             boxes.nodes.push(Node { corners, first: first as u32, end: end as u32, second: 0 });
             if part.len() <= LEAF {
                 continue;
             }
-            // Halved before the sum, which could overflow. Any axis would be right.
-            let size = corners[1] * 0.5 - corners[0] * 0.5;
-            let axis = size.max_position();
-            let middle = |own: &Corners| own[0][axis] * 0.5 + own[1][axis] * 0.5;
-            let half = part.len() / 2;
-            part.select_nth_unstable_by(half, |a, b| middle(&a.1).total_cmp(&middle(&b.1)).then(a.0.cmp(&b.0)));
+            let half = cheapest_cut(part).unwrap_or_else(|| {
+                // Boxes about one point, or so large that their areas overflow.
+                let half = part.len() / 2;
+                part.select_nth_unstable_by_key(half, |piece| piece.0);
+                half
+            });
             jobs.push((first + half, end, Some(here)));
             jobs.push((first, first + half, None));
         }
@@ -88,4 +88,64 @@ impl PieceBoxes {
         }
         Ok(())
     }
+}
+
+/// The number of places between which a cut is sought, for each axis.
+const BINS: usize = 12;
+
+/// Half the area of a box.
+fn half_area([low, high]: Corners) -> f64 {
+    let d = (high - low).max(DVec3::ZERO);
+    d.x * d.y + d.y * d.z + d.z * d.x
+}
+
+fn union(a: Corners, b: Corners) -> Corners {
+    [a[0].min(b[0]), a[1].max(b[1])]
+}
+
+/// Parts pieces in two by the middle of their boxes, where that is cheapest (Goldsmith and Salmon 1987, with
+/// bins as Wald 2007); gives the size of the first part, or `None` if no such cut leaves something on both sides.
+fn cheapest_cut(part: &mut [(PieceId, Corners)]) -> Option<usize> {
+    const NOWHERE: Corners = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    // Halved before the sum, which could overflow.
+    let middle = |own: &Corners| own[0] * 0.5 + own[1] * 0.5;
+    let [low, high] = part.iter().fold(NOWHERE, |all, (_, own)| union(all, [middle(own); 2]));
+    let bin = |own: &Corners, axis: usize| {
+        let share = (middle(own)[axis] - low[axis]) / (high[axis] - low[axis]);
+        ((share * BINS as f64) as usize).min(BINS - 1)
+    };
+    let mut best: Option<(f64, usize, usize)> = None;
+    for axis in 0..3 {
+        if high[axis].partial_cmp(&low[axis]) != Some(std::cmp::Ordering::Greater) {
+            continue;
+        }
+        let mut bins = [(0, NOWHERE); BINS];
+        for (_, own) in &*part {
+            let bin = &mut bins[bin(own, axis)];
+            *bin = (bin.0 + 1, union(bin.1, *own));
+        }
+        let mut behind = [0.0; BINS];
+        let mut all = (0, NOWHERE);
+        for k in (1..BINS).rev() {
+            all = (all.0 + bins[k].0, union(all.1, bins[k].1));
+            behind[k] = if all.0 == 0 { f64::INFINITY } else { f64::from(all.0) * half_area(all.1) };
+        }
+        let mut before = (0, NOWHERE);
+        for k in 1..BINS {
+            before = (before.0 + bins[k - 1].0, union(before.1, bins[k - 1].1));
+            let cost = f64::from(before.0) * half_area(before.1) + behind[k];
+            if before.0 > 0 && cost < best.map_or(f64::INFINITY, |best| best.0) {
+                best = Some((cost, axis, k));
+            }
+        }
+    }
+    let (_, axis, cut) = best?;
+    let mut first = 0;
+    for k in 0..part.len() {
+        if bin(&part[k].1, axis) < cut {
+            part.swap(first, k);
+            first += 1;
+        }
+    }
+    Some(first)
 }

@@ -74,11 +74,10 @@ impl Evidence {
         let mut checker = Checker::new(scene, self, signs)?;
         let circles = checker.check_tiling()?;
         if extent >= Extent::Cones {
-            let boxes = checker.boxes();
-            checker.check_cones(&boxes)?;
-            if extent == Extent::All {
-                checker.check_depth(&boxes)?;
-            }
+            checker.check_cones()?;
+        }
+        if extent >= Extent::All {
+            checker.check_depth()?;
         }
         Ok(checker.certificate(circles))
     }
@@ -116,9 +115,8 @@ impl Evidence {
             return malformed(format!("sliver {k}"), "its piece or a vertex of its plane does not exist");
         }
         for (k, cell) in self.cells.iter().enumerate() {
-            let is_side = |side: &super::HalfSphere| {
-                (side.splitter as usize) < self.splitters.len() && side.inside != Sign::Zero
-            };
+            let is_side =
+                |side: &super::HalfSphere| (side.splitter as usize) < self.splitters.len() && side.inside != Sign::Zero;
             if !cell.piece.is_none_or(has_piece) || !cell.sides.iter().all(is_side) {
                 return malformed(format!("cell {k}"), "its piece or one of its splitters does not exist");
             }
@@ -126,4 +124,3 @@ impl Evidence {
         Ok(())
     }
 }
-

@@ -4,9 +4,11 @@ use super::certificate::Certificate;
 use super::defect::{Defect, rounded_crossing};
 use super::evidence::{Evidence, EvidenceDomain, HalfSphere};
 use super::signs::Signs;
-use crate::exact::{Sign, Splitter};
-use crate::scene::{PieceId, Scene, Side};
+use crate::exact;
+use crate::exact::Sign;
+use crate::scene::{PieceId, Scene, Side, Splitter, VertexId};
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 
 const NONE: u32 = u32::MAX;
 
@@ -32,14 +34,21 @@ pub(super) struct Checker<'a, S> {
 impl<'a, S: Signs> Checker<'a, S> {
     /// Takes in evidence whose form was checked.
     pub(super) fn new(scene: &'a Scene, evidence: &'a Evidence, mut signs: S) -> Result<Self, Defect> {
+        let mut edges = vec![NONE; scene.edges().len()];
+        let edge_ids: FxHashMap<[VertexId; 2], usize> = scene.edges().iter().copied().zip(0..).collect();
         for splitter in &evidence.splitters {
-            signs.add(&scene.resolve_splitter(*splitter));
+            let id = signs.add(&scene.resolve_splitter(*splitter));
+            if let Splitter::Edge(ends) = splitter
+                && let Some(&edge) = edge_ids.get(ends)
+            {
+                edges[edge] = id;
+            }
         }
         for plane in scene.planes() {
             signs.add_plane(&scene.resolve_plane(*plane));
         }
         let heights = (0..scene.planes().len() as u32).map(|plane| signs.height(evidence.eye, plane)).collect();
-        let axes = DVec3::AXES.map(|axis| signs.add(&Splitter::Given(axis)));
+        let axes = DVec3::AXES.map(|axis| signs.add(&exact::Splitter::Given(axis)));
         let mut checker = Self {
             scene,
             evidence,
@@ -49,7 +58,7 @@ impl<'a, S: Signs> Checker<'a, S> {
             horizon: None,
             sides: Vec::new(),
             starts: vec![0],
-            edges: vec![NONE; scene.edges().len()],
+            edges,
             heights,
         };
         checker.horizon = checker.add_horizon()?;
@@ -75,14 +84,14 @@ impl<'a, S: Signs> Checker<'a, S> {
     fn add_horizon(&mut self) -> Result<Option<HalfSphere>, Defect> {
         let (splitter, inside) = match self.evidence.domain {
             EvidenceDomain::Sphere => return Ok(None),
-            EvidenceDomain::Hemisphere(normal) => (Splitter::Given(normal), Sign::Positive),
+            EvidenceDomain::Hemisphere(normal) => (exact::Splitter::Given(normal), Sign::Positive),
             EvidenceDomain::Above(id, side) => {
                 let piece = self.scene.piece(id);
                 let up = if piece.facing() == side { Sign::Positive } else { Sign::Negative };
                 if self.heights[piece.plane_id().index()] * up == Sign::Negative {
                     return Err(Defect::BehindSurface { piece: id });
                 }
-                (Splitter::Parallel(self.scene.resolve_plane(piece.plane())), up)
+                (exact::Splitter::Parallel(self.scene.resolve_plane(piece.plane())), up)
             }
         };
         Ok(Some(HalfSphere { splitter: self.signs.add(&splitter), inside }))
@@ -92,7 +101,7 @@ impl<'a, S: Signs> Checker<'a, S> {
     fn edge(&mut self, edge: usize) -> u32 {
         if self.edges[edge] == NONE {
             let ends = self.scene.edges()[edge].map(|v| self.scene.vertex(v));
-            self.edges[edge] = self.signs.add(&Splitter::Edge(ends));
+            self.edges[edge] = self.signs.add(&exact::Splitter::Edge(ends));
         }
         self.edges[edge]
     }
@@ -203,10 +212,6 @@ impl<'a, S: Signs> Checker<'a, S> {
     }
 
     pub(super) fn certificate(&self, great_circles: usize) -> Certificate {
-        Certificate {
-            cells: self.evidence.cells.len(),
-            great_circles,
-            exact_decisions: self.signs.decisions(),
-        }
+        Certificate { cells: self.evidence.cells.len(), great_circles, exact_decisions: self.signs.decisions() }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::evidence::Evidence;
 use crate::exact::Sign;
-use crate::scene::{PieceId, PolygonId, Scene, Splitter, SupportingPlane, VertexId};
+use crate::scene::{PieceId, PieceRef, PolygonId, Scene, Splitter, SupportingPlane, VertexId};
 use glam::DVec3;
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -174,14 +174,15 @@ impl Defect {
             Self::Hidden { by, .. } => pieces.extend([*by]),
             _ => {}
         }
+        let vertices: Vec<VertexId> = vertices.into_iter().collect();
         let has = |corners: &[VertexId], wanted: &[VertexId]| wanted.iter().all(|v| corners.contains(v));
         let bounding = scene.pieces().filter(|piece| {
             let corners = piece.vertices();
             edges.iter().any(|ends| has(corners, ends))
-                || matches!(piece.plane(), SupportingPlane::Points(points) if has(&Vec::from_iter(vertices.iter().copied()), &points))
+                || matches!(piece.plane(), SupportingPlane::Points(points) if has(&vertices, &points))
         });
         let named = pieces.iter().filter(|piece| piece.index() < scene.piece_count()).map(|&piece| scene.piece(piece));
-        let polygons: BTreeSet<PolygonId> = bounding.chain(named).map(|piece| piece.polygon()).collect();
+        let polygons: BTreeSet<PolygonId> = bounding.chain(named).map(PieceRef::polygon).collect();
         polygons.into_iter().collect()
     }
 

@@ -60,8 +60,8 @@ impl Signs for KernelSigns {
             // less than 4e-13.
             let near = firsts.iter().rev().take_while(|first| cosine - first.0 < 1e-12);
             let known = near.map(|first| first.1).find_map(|first| {
-                let [a, b] = [first, k].map(|s| &self.splitters[s as usize]);
-                match self.kernel.compare_circles(a, b) {
+                let [a, b] = [first, k].map(|s| self.ids[s as usize]);
+                match self.kernel.compare_circles_of(a, b) {
                     CircleRelation::Same => Some((first, Sign::Positive)),
                     CircleRelation::Opposite => Some((first, Sign::Negative)),
                     CircleRelation::Different => None,

@@ -6,8 +6,11 @@ use super::defect::Defect;
 use super::evidence::{EvidenceSliver, HalfSphere};
 use super::signs::Signs;
 use crate::exact::{Plane, Sign, Splitter};
-use crate::scene::{PieceId, Side};
+use crate::scene::{PieceId, PieceRef, Side};
 use glam::DVec3;
+
+/// So many pieces in front of another are tested against each of its cells.
+const FEW: usize = 16;
 
 /// Buffers.
 #[derive(Default)]
@@ -18,18 +21,19 @@ struct Work {
 
 impl<S: Signs> Checker<'_, S> {
     /// A hierarchy of the pieces that can be seen at all: those whose plane does not hold the eye.
-    pub(super) fn boxes(&self) -> PieceBoxes {
+    fn boxes(&self) -> PieceBoxes {
         let seen = self.scene.pieces().filter(|piece| !self.heights[piece.plane_id().index()].is_zero());
-        PieceBoxes::new(self.scene, seen.map(|piece| piece.id()))
+        PieceBoxes::new(self.scene, seen.map(PieceRef::id))
     }
 
     /// D: every cell lies in the cone of the piece that it shows, and background meets no cone.
-    pub(super) fn check_cones(&mut self, boxes: &PieceBoxes) -> Result<(), Defect> {
+    pub(super) fn check_cones(&mut self) -> Result<(), Defect> {
         let mut work = Work::default();
+        let mut boxes = None;
         for cell in 0..self.cell_count() {
             match self.evidence.cells[cell as usize].piece {
                 Some(piece) => self.check_cone(cell, piece, &mut work)?,
-                None => self.check_background(cell, boxes, &mut work)?,
+                None => self.check_background(cell, boxes.get_or_insert_with(|| self.boxes()), &mut work)?,
             }
         }
         Ok(())
@@ -55,19 +59,20 @@ impl<S: Signs> Checker<'_, S> {
 
     fn check_background(&mut self, cell: u32, boxes: &PieceBoxes, work: &mut Work) -> Result<(), Defect> {
         let sides = self.cell(cell).to_vec();
-        // Both closures need the checker, one after the other.
-        let checker = std::cell::RefCell::new(self);
-        boxes.visit(
-            |corners| checker.borrow_mut().signs.box_outside(&sides, corners),
+        let mut candidates = Vec::new();
+        let Ok(()) = boxes.visit(
+            |corners| self.signs.box_outside(&sides, corners),
             |piece| {
-                let checker = &mut *checker.borrow_mut();
-                if checker.meets_cone(&sides, piece, work) {
-                    let towards = checker.middle(&work.part);
-                    return Err(Defect::NotBackground { cell, piece, towards });
-                }
-                Ok(())
+                candidates.push(piece);
+                Ok::<(), std::convert::Infallible>(())
             },
-        )
+        );
+        for piece in candidates {
+            if self.meets_cone(&sides, piece, work) {
+                return Err(Defect::NotBackground { cell, piece, towards: self.middle(&work.part) });
+            }
+        }
+        Ok(())
     }
 
     /// True if a cell meets the interior of a piece's cone; leaves what they share in `work.part`.
@@ -79,30 +84,67 @@ impl<S: Signs> Checker<'_, S> {
     }
 
     /// E: no other piece is in front of the one that a cell shows, in any of the cell's directions.
-    pub(super) fn check_depth(&mut self, boxes: &PieceBoxes) -> Result<(), Defect> {
+    pub(super) fn check_depth(&mut self) -> Result<(), Defect> {
+        let boxes = &self.boxes();
+        let mut cells: Vec<(PieceId, u32)> = (0..self.cell_count())
+            .filter_map(|cell| self.evidence.cells[cell as usize].piece.map(|piece| (piece, cell)))
+            .collect();
+        cells.sort_unstable();
         let mut work = Work::default();
-        for cell in 0..self.cell_count() {
-            let Some(piece) = self.evidence.cells[cell as usize].piece else { continue };
-            let sides = self.cell(cell).to_vec();
-            let plane = self.scene.piece(piece).plane_id().0;
-            let away = -self.height(piece);
-            let checker = std::cell::RefCell::new(&mut *self);
-            boxes.visit(
-                |corners| {
-                    let signs = &mut checker.borrow_mut().signs;
-                    signs.box_outside(&sides, corners) || signs.box_beyond(plane, away, corners)
-                },
-                |other| {
-                    let checker = &mut *checker.borrow_mut();
-                    if other != piece && checker.is_in_front(other, piece, &sides, &mut work) {
-                        let towards = checker.middle(&work.part);
+        for showing in cells.chunk_by(|a, b| a.0 == b.0) {
+            let piece = showing[0].0;
+            // What may be in front of the piece at all; if that is a lot, each cell looks for itself.
+            let mut cone = std::mem::take(&mut work.cone);
+            self.cone(piece, &mut cone);
+            let common = self.candidates(piece, &cone, boxes, FEW);
+            work.cone = cone;
+            for &(_, cell) in showing {
+                let sides = self.cell(cell).to_vec();
+                let own = if common.is_none() { self.candidates(piece, &sides, boxes, usize::MAX) } else { None };
+                for &other in common.iter().chain(&own).flatten() {
+                    if self.is_in_front(other, piece, &sides, &mut work) {
+                        let towards = self.middle(&work.part);
                         return Err(Defect::Hidden { cell, piece, by: other, towards });
                     }
-                    Ok(())
-                },
-            )?;
+                }
+            }
         }
         Ok(())
+    }
+
+    /// The other pieces of which something may be between the eye and a piece, inside of a cone in which all of the cone is
+    /// filled by that piece; `None` if there are more than `most`.
+    ///
+    /// Whatever is there lies in the box around the eye and the piece, and in the interior of it.
+    fn candidates(
+        &mut self,
+        piece: PieceId,
+        cone: &[HalfSphere],
+        boxes: &PieceBoxes,
+        most: usize,
+    ) -> Option<Vec<PieceId>> {
+        let eye = self.evidence.eye;
+        let corners = self.scene.piece(piece).points();
+        let [low, high] = corners.fold([eye, eye], |[low, high], p| [low.min(p), high.max(p)]);
+        let plane = self.scene.piece(piece).plane_id().0;
+        let away = -self.height(piece);
+        let signs = &mut self.signs;
+        let mut found = Vec::new();
+        let visited = boxes.visit(
+            |corners| {
+                corners[0].cmpge(high).any()
+                    || corners[1].cmple(low).any()
+                    || signs.box_outside(cone, corners)
+                    || signs.box_beyond(plane, away, corners)
+            },
+            |other| {
+                if other != piece {
+                    found.push(other);
+                }
+                if found.len() > most { Err(()) } else { Ok(()) }
+            },
+        );
+        visited.ok().map(|()| found)
     }
 
     /// True if `other` is in front of the piece that a cell shows, somewhere in that cell and without an

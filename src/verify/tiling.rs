@@ -27,6 +27,10 @@ struct End {
     is_start: bool,
     /// Half turns from the first end: at 0, within the first, at 1, within the second.
     half: u8,
+    /// About where it is, counter-clockwise from the first end.
+    angle: f64,
+    /// It is not where the end before it is.
+    is_new_place: bool,
 }
 
 impl<S: Signs> Checker<'_, S> {
@@ -43,7 +47,8 @@ impl<S: Signs> Checker<'_, S> {
     /// A: all corners but its own two lie strictly inside of every side.
     fn check_convex(&mut self, cell: u32) -> Result<(), Defect> {
         let sides = self.cell(cell).to_vec();
-        let not_convex = |corner: usize, side: usize| Defect::NotConvex { cell, corner: corner as u32, side: side as u32 };
+        let not_convex =
+            |corner: usize, side: usize| Defect::NotConvex { cell, corner: corner as u32, side: side as u32 };
         if sides.len() < 3 {
             return Err(not_convex(0, 0));
         }
@@ -109,25 +114,22 @@ impl<S: Signs> Checker<'_, S> {
                     Sign::Zero if self.is_same_way(circle, [first, across]) => 0,
                     Sign::Zero => 2,
                 };
-                ends.push(End { across, arc, is_start, half });
+                let angle = self.rounded_angle(circle, first, across);
+                ends.push(End { across, arc, is_start, half, angle, is_new_place: true });
             }
         }
-        ends.sort_by(|a, b| self.compare_ends(circle, a, b));
+        self.sort_ends(circle, &mut ends);
         // The number of the place of each end; equal ends share one.
         let mut places = vec![[0; 2]; arcs.len()];
-        let mut place = 0;
-        let mut previous = None;
         let mut deltas: Vec<(HalfSphere, i64)> = Vec::new();
         for end in &ends {
-            let is_new = previous.is_none_or(|before| self.compare_ends(circle, &before, end) != Ordering::Equal);
-            if is_new {
-                place = deltas.len();
+            if end.is_new_place {
                 deltas.push((end.across, 0));
             }
+            let place = deltas.len() - 1;
             let count = arcs[end.arc].count;
             deltas[place].1 += if end.is_start { count } else { -count };
             places[end.arc][usize::from(!end.is_start)] = place;
-            previous = Some(*end);
         }
         // An arc is less than half a turn long, so one that ends at a lower place than it starts at passes the
         // stretch before the first place.
@@ -155,11 +157,44 @@ impl<S: Signs> Checker<'_, S> {
         self.orientation([HalfSphere { splitter: circle, inside: Sign::Positive }, p, q])
     }
 
+    /// Puts ends in their exact order and finds out which are in one place.
+    ///
+    /// Rounded angles nearly always give that order; only if a comparison of neighbours shows that they do not, all
+    /// are sorted exactly.
+    fn sort_ends(&mut self, circle: u32, ends: &mut [End]) {
+        ends.sort_unstable_by(|a, b| a.half.cmp(&b.half).then(a.angle.total_cmp(&b.angle)).then(a.arc.cmp(&b.arc)));
+        if !self.find_places(circle, ends) {
+            ends.sort_by(|a, b| self.compare_ends(circle, a, b));
+            self.find_places(circle, ends);
+        }
+    }
+
+    /// False if the ends are not in order.
+    fn find_places(&mut self, circle: u32, ends: &mut [End]) -> bool {
+        for k in 1..ends.len() {
+            let order = self.compare_ends(circle, &ends[k - 1], &ends[k]);
+            if order == Ordering::Greater {
+                return false;
+            }
+            ends[k].is_new_place = order == Ordering::Less;
+        }
+        true
+    }
+
+    /// An angle of about that from one end to another, counter-clockwise, in [0, 2 pi).
+    fn rounded_angle(&self, circle: u32, from: HalfSphere, to: HalfSphere) -> f64 {
+        let circle = HalfSphere { splitter: circle, inside: Sign::Positive };
+        let [p, q] = [from, to].map(|across| self.rounded([circle, across]));
+        let normal = self.signs.rounded(circle.splitter).normalize_or_zero();
+        let angle = normal.dot(p.cross(q)).atan2(p.dot(q));
+        if angle < 0.0 { angle + std::f64::consts::TAU } else { angle }
+    }
+
     fn compare_ends(&mut self, circle: u32, a: &End, b: &End) -> Ordering {
         // Within a half turn no two directions are opposite.
         a.half.cmp(&b.half).then_with(|| match a.half {
             0 | 2 => Ordering::Equal,
-            _ if a.across == b.across => Ordering::Equal,
+            _ if self.on_circle(a.across) == self.on_circle(b.across) => Ordering::Equal,
             _ => match self.ahead(circle, a.across, b.across) {
                 Sign::Positive => Ordering::Less,
                 Sign::Zero => Ordering::Equal,
@@ -200,14 +235,9 @@ impl<S: Signs> Checker<'_, S> {
                 continue;
             }
             let inside = |side: &HalfSphere| signs[side.splitter as usize] == side.inside;
-            let cells: Vec<u32> =
-                (0..self.cell_count()).filter(|&cell| self.cell(cell).iter().all(inside)).collect();
+            let cells: Vec<u32> = (0..self.cell_count()).filter(|&cell| self.cell(cell).iter().all(inside)).collect();
             let expected = usize::from(self.horizon.as_ref().is_none_or(inside));
-            return if cells.len() == expected {
-                Ok(())
-            } else {
-                Err(Defect::Covered { direction, cells, expected })
-            };
+            return if cells.len() == expected { Ok(()) } else { Err(Defect::Covered { direction, cells, expected }) };
         }
         // No splitter of a convex cell has a normal of 0, so a few thousand great circles would have to be
         // aimed at all candidates.
