@@ -357,9 +357,10 @@ impl ContourTree {
     pub(crate) fn hides(&self, eye: DVec3, bounds: &Bounds, work: &mut Workspace) -> bool {
         let center = (bounds.low + bounds.high) * 0.5 - eye;
         let half = (bounds.high - bounds.low) * 0.5;
-        // Rounding of the four operations, on coordinates of this size, and of the sums below.
+        // Rounding of the four operations, on coordinates of this size, and of the sums below; and what
+        // underflows, here and there: some twenty halves of the least number.
         let size = eye.abs() + bounds.low.abs() + bounds.high.abs();
-        let margin = 16.0 * U * size.element_sum();
+        let margin = 16.0 * U * size.element_sum() + f64::MIN_POSITIVE;
         if !margin.is_finite() {
             return false;
         }
