@@ -6,8 +6,8 @@ mod common;
 use common::{Faces, cluttered_room};
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
-use nusselt::contour::{Domain, Viewpoint};
-use nusselt::scene::{Scene, Side};
+use nusselt::contour::{Cell, Domain, ViewOptions, Viewpoint};
+use nusselt::scene::{Material, Scene, Side};
 
 fn scaled(faces: &Faces, scale: f64) -> Scene {
     let mut faces = faces.clone();
@@ -65,4 +65,26 @@ fn standing_on_surfaces_works_at_any_scale() {
             assert_eq!(Viewpoint::surface_at(&scene, DVec3::new(2.0, 1.0, 0.6) * scale, normal), None, "2^{exponent}");
         }
     }
+}
+
+#[test]
+fn what_is_seen_in_steps_of_the_least_number_is_what_is_seen_in_whole_numbers() {
+    // A triangle and one that it hides in part, with boxes whose middles are no multiples of the least number.
+    let near = [[-2.0, -3.0, 2.0], [-1.0, 0.0, 0.0], [-2.0, -2.0, 3.0]];
+    let far = [[1.0, -3.0, 5.0], [3.0, -3.0, 5.0], [2.0, -4.0, 4.0]];
+    let eye = DVec3::new(-3.0, 1.0, -1.0);
+    let seen = [1.0, f64::from_bits(1)].map(|scale| {
+        let vertices: Vec<_> = near.iter().chain(&far).map(|p| p.map(|x| x * scale)).collect();
+        let faces = [vec![0, 1, 2], vec![3, 4, 5]];
+        let scene = Scene::builder().mesh(&vertices, &faces, Material::new("m")).build().unwrap();
+        let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+        let options = ViewOptions { quadtree_depth: Some(0), ..ViewOptions::default() };
+        let image = bsp.view_with(&Viewpoint::free(eye * scale), &Domain::Sphere, &options).unwrap();
+        let mut seen: Vec<_> = image.cells().filter_map(Cell::polygon).collect();
+        seen.sort_unstable();
+        seen.dedup();
+        seen
+    });
+    assert_eq!(seen[0], seen[1]);
+    assert_eq!(seen[0].len(), 2);
 }

@@ -109,14 +109,31 @@ impl Approx3 {
     /// the slacks themselves.
     #[inline]
     pub(crate) fn dot_sign(&self, other: &Self) -> Option<Sign> {
-        let x = self.v.dot(other.v);
-        let bound = self.slack + other.slack;
-        if x > bound {
-            Some(Sign::Positive)
-        } else if x < -bound {
-            Some(Sign::Negative)
-        } else {
-            None
-        }
+        decided(self.v.dot(other.v), self.slack + other.slack)
+    }
+
+    /// The sign of the determinant `self . (b x c)` of the three real vectors, if f64 can tell.
+    ///
+    /// Proof. With errors `e`, `f`, `g <= 1/8`, each component of the cross product, at most 8, is off by
+    /// `4.13 (f + g) + 16.1 u`: see [`Approx3::cross`]. So the dot product is off by at most
+    /// `3 (2.13 (4.13 (f + g) + 16.1 u) + 8 e) < 24 e + 26.4 (f + g) + 103 u`, to which its own rounding
+    /// adds `16 u` for each of the products, `32 u` and `48 u` for the sums: `129 u`. Four times the
+    /// slacks are `32 (e + f + g) + 384 u`.
+    #[inline]
+    pub(crate) fn det_sign(&self, b: &Self, c: &Self) -> Option<Sign> {
+        let x = self.v.dot(b.v.cross(c.v));
+        decided(x, 4.0 * (self.slack + b.slack + c.slack))
+    }
+}
+
+/// The sign of a number that is off by at most `bound`, if that tells.
+#[inline]
+fn decided(x: f64, bound: f64) -> Option<Sign> {
+    if x > bound {
+        Some(Sign::Positive)
+    } else if x < -bound {
+        Some(Sign::Negative)
+    } else {
+        None
     }
 }

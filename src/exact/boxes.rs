@@ -18,9 +18,7 @@ pub(crate) struct SeenBox {
 impl SeenBox {
     /// The box between two corners, seen from `from`.
     ///
-    /// With `S` the sum of all coordinates' sizes: the middle and the half are off by `2 u S`, which the
-    /// normal's components, at most 2, double; the two dot products are off by `10 u S` each. In all below
-    /// `28 u S`, and what underflows is less than `2^-1022`.
+    /// The margin is derived in docs/numerics.md.
     pub(crate) fn new(from: DVec3, low: DVec3, high: DVec3) -> Self {
         let center = (low + high) * 0.5 - from;
         let half = (high - low) * 0.5;

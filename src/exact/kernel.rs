@@ -270,7 +270,7 @@ impl Kernel {
             return Sign::Zero;
         }
         let [p, q, r] = splitters.map(|s| self.approx_splitter(s));
-        if let Some(sign) = q.cross(r).dot_sign(&p) {
+        if let Some(sign) = p.det_sign(&q, &r) {
             self.stats.filter += 1;
             return sign;
         }
@@ -295,7 +295,7 @@ impl Kernel {
     #[inline]
     pub fn orientation_of(&mut self, splitters: [SplitterId; 3]) -> Sign {
         let [a, b, c] = splitters.map(|s| &self.splitters.approx[s.0 as usize]);
-        if let Some(sign) = b.cross(*c).dot_sign(a) {
+        if let Some(sign) = a.det_sign(b, c) {
             self.stats.filter += 1;
             return sign;
         }
@@ -402,7 +402,7 @@ impl Kernel {
             return Along::Same;
         }
         let (n, p, q) = (self.approx_splitter(circle), self.approx_direction(from), self.approx_direction(other));
-        let ahead = if let Some(sign) = p.cross(q).dot_sign(&n) {
+        let ahead = if let Some(sign) = n.det_sign(&p, &q) {
             self.stats.filter += 1;
             sign
         } else {

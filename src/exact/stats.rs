@@ -8,8 +8,8 @@ use std::ops::AddAssign;
 pub struct PredicateStats {
     /// Decided by the f64 filter.
     pub filter: u64,
-    /// Left undecided by the filter, then known without arithmetic: a direction on a splitter that defines
-    /// it, three edges along one axis.
+    /// Known without arithmetic, before the filter or after it: a direction on a splitter that defines it,
+    /// three edges along one axis.
     pub identity: u64,
     /// Decided by integers of fixed width, or by expansions.
     pub fixed: u64,
@@ -23,7 +23,7 @@ impl PredicateStats {
         self.filter + self.undecided()
     }
 
-    /// The calls that the filter left undecided.
+    /// The calls that the filter did not decide.
     pub fn undecided(&self) -> u64 {
         self.identity + self.fixed + self.arbitrary
     }
