@@ -1,9 +1,11 @@
 //! Checks that share no predicate with the engine.
 //!
-//! [`RayOracle`] tells what a single ray sees, by brute force over all pieces.
+//! [`RayOracle`] tells what a single ray sees, by brute force over all pieces; [`outside`] has
+//! whole images judged by a triangulation from another crate.
 
 mod filter;
 mod integers;
+pub mod outside;
 mod ray;
 
 #[cfg(test)]
