@@ -31,7 +31,7 @@
 //! | [`integral`] | solid angles and form factors of cells |
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
 //! | [`io`] | reading scenes, writing results |
-//! | [`verify`] | an exact ray oracle that shares nothing with the engine |
+//! | [`verify`] | an exact ray oracle that shares nothing with the engine, outside opinions |
 //!
 //! Source: P. Jacob, *Evaluation of a BRDF using BSP Trees*, Interner Bericht 272/95, University of
 //! Kaiserslautern, 1995.

@@ -24,7 +24,7 @@ mod tests;
 pub use crate::scene::Splitter;
 pub use domain::Domain;
 pub use image::{Cell, CellId, ContourImage, TreeArc};
-pub use locate::Location;
+pub use locate::{Location, Region};
 pub use neighbours::Neighbour;
 pub use projection::{Projection, ProjectionError, Projector, ViewFrame, Window};
 pub use view::{ViewError, ViewOptions, ViewStats};

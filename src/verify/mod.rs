@@ -1,8 +1,8 @@
-//! Checks that do not trust the engine.
+//! Checks that do not trust the engine, and use nothing of it but the scene.
 //!
 //! [`Evidence`] is what a contour image claims; [`Evidence::check`] proves it, for all directions, or tells what is
-//! wrong. [`RayOracle`] tells what a single ray sees, by brute force over all pieces. Neither uses anything
-//! of the code that makes contour images.
+//! wrong. [`RayOracle`] tells what a single ray sees, by brute force over all pieces. [`outside`] asks another
+//! library, in rounded coordinates, for its opinion on a whole image.
 
 mod boxes;
 mod certificate;
@@ -13,6 +13,7 @@ mod filter;
 mod integers;
 mod kernel_signs;
 mod labels;
+pub mod outside;
 mod rational_signs;
 mod ray;
 mod signs;

@@ -1,6 +1,9 @@
 //! Scenes and small tools that several tests share.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
+pub(crate) mod face;
+pub(crate) mod scenes;
+
 use glam::{DMat3, DQuat, DVec3};
 use nusselt::scene::{Material, Scene};
 

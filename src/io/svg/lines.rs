@@ -100,7 +100,7 @@ fn across(cell: Cell<'_>, [a, b]: [DVec3; 2]) -> Option<Cell<'_>> {
     let outwards = b.cross(a).normalize_or_zero();
     match cell.image().locate((a + b).normalize_or_zero() + outwards * 1e-7) {
         Location::Cell(other) => Some(cell.image().cell(other)),
-        Location::Boundary | Location::Outside => None,
+        Location::Arc { .. } | Location::Vertex { .. } | Location::Outside => None,
     }
 }
 
