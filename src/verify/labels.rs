@@ -115,7 +115,7 @@ impl<S: Signs> Checker<'_, S> {
     /// The other pieces of which something may be between the eye and a piece, inside of a cone in which all of the cone is
     /// filled by that piece; `None` if there are more than `most`.
     ///
-    /// Whatever is there lies in the box around the eye and the piece, and in the interior of it.
+    /// Whatever is there, or coplanar with the piece, meets the box around the eye and the piece.
     fn candidates(
         &mut self,
         piece: PieceId,
@@ -132,8 +132,8 @@ impl<S: Signs> Checker<'_, S> {
         let mut found = Vec::new();
         let visited = boxes.visit(
             |corners| {
-                corners[0].cmpge(high).any()
-                    || corners[1].cmple(low).any()
+                corners[0].cmpgt(high).any()
+                    || corners[1].cmplt(low).any()
                     || signs.box_outside(cone, corners)
                     || signs.box_beyond(plane, away, corners)
             },
@@ -161,7 +161,7 @@ impl<S: Signs> Checker<'_, S> {
         };
         self.meets_cone(sides, other, work)
             && crease.is_none_or(|half| self.clip(&mut work.part, half))
-            && !(self.is_excused(piece, work) || self.is_excused(other, work))
+            && !self.is_excused([piece, other], work)
     }
 
     /// Where the corners of one piece are against the plane of another, seen from the eye.
@@ -193,16 +193,20 @@ impl<S: Signs> Checker<'_, S> {
         HalfSphere { splitter: self.signs.add(&Splitter::Crease(planes)), inside }
     }
 
-    /// True if the slivers recorded of a piece are all that the piece shows in `work.part`; else leaves there what is
-    /// not excused.
-    fn is_excused(&mut self, piece: PieceId, work: &mut Work) -> bool {
-        let slivers = &self.evidence.slivers;
-        slivers.iter().filter(|sliver| sliver.piece == piece).any(|sliver| self.cut_sliver(sliver, &mut work.part))
+    /// True if two pieces may be in wrong order in all of `work.part`, by the slivers recorded of them; else leaves
+    /// there what is not excused.
+    ///
+    /// At a node of the 3D BSP that parts two pieces, the order is wrong only where the one that was left uncut lies
+    /// beyond the node's plane, by less than epsilon, and the other one between that plane and it.
+    fn is_excused(&mut self, pieces: [PieceId; 2], work: &mut Work) -> bool {
+        let slivers = self.evidence.slivers.iter().filter(|sliver| pieces.contains(&sliver.piece));
+        slivers.into_iter().any(|sliver| self.cut_sliver(sliver, pieces, &mut work.part))
     }
 
     /// Cuts off what is seen of a piece through a recorded sliver; true if nothing is left.
-    fn cut_sliver(&mut self, sliver: &EvidenceSliver, part: &mut Vec<HalfSphere>) -> bool {
-        let own = self.scene.resolve_plane(self.scene.piece(sliver.piece).plane());
+    fn cut_sliver(&mut self, sliver: &EvidenceSliver, pieces: [PieceId; 2], part: &mut Vec<HalfSphere>) -> bool {
+        let plane_of = |piece: PieceId| self.scene.resolve_plane(self.scene.piece(piece).plane());
+        let (planes, own) = (pieces.map(plane_of), plane_of(sliver.piece));
         let plane = self.scene.resolve_plane(sliver.plane);
         let splitter = self.signs.add(&Splitter::Crease([own, plane]));
         let height = self.height(sliver.piece);
@@ -215,7 +219,8 @@ impl<S: Signs> Checker<'_, S> {
             Some(Side::Front) => (self.clip(&mut excused, front), Some(back)),
             Some(Side::Back) => (self.clip(&mut excused, back), Some(front)),
         };
-        if !is_there || !self.is_within_epsilon(&excused, &own, &plane) {
+        let within = |own| self.is_within_epsilon(&excused, own, &plane);
+        if !is_there || !planes.iter().all(within) {
             return false;
         }
         rest.is_none_or(|half| !self.clip(part, half))

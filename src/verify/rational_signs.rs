@@ -20,11 +20,13 @@ type Vector<T> = [T; 3];
 /// Exact vectors of all that was taken in.
 pub(super) struct RationalSigns {
     eye: Vector<BigRational>,
-    /// A number that makes every coordinate whole.
+    /// A number that makes every coordinate whole, and the eye times that.
     scale: BigInt,
+    scaled_eye: Vector<BigInt>,
     /// Whole multiples of the normals.
     normals: Vec<Vector<BigInt>>,
-    planes: Vec<RationalPlane>,
+    /// Whole multiples of the planes.
+    planes: Vec<([BigInt; 3], BigInt)>,
     decisions: u64,
 }
 
@@ -60,7 +62,8 @@ impl RationalSigns {
     pub(super) fn new(scene: &Scene, eye: DVec3) -> Self {
         let coordinates = scene.vertices().iter().copied().chain([eye]).flat_map(|p| p.to_array());
         let scale = coordinates.fold(BigInt::from(1), |scale, x| scale.lcm(rational(x).denom()));
-        Self { eye: exact(eye), scale, normals: Vec::new(), planes: Vec::new(), decisions: 0 }
+        let scaled_eye = exact(eye).map(|x| (x * BigRational::from_integer(scale.clone())).to_integer());
+        Self { eye: exact(eye), scale, scaled_eye, normals: Vec::new(), planes: Vec::new(), decisions: 0 }
     }
 
     fn normal(&self, splitter: &Splitter) -> Vector<BigRational> {
@@ -79,6 +82,17 @@ impl RationalSigns {
         }
     }
 
+    /// A multiple of a coordinate, the same for all.
+    fn scaled(&self, x: f64) -> BigInt {
+        let x = rational(x);
+        x.numer() * (&self.scale / x.denom())
+    }
+
+    /// The sign of a plane's height at a point.
+    fn height_at(&self, (normal, offset): &([BigInt; 3], BigInt), point: DVec3) -> Sign {
+        sign_of(&(dot(normal, &point.to_array().map(|x| self.scaled(x))) - offset))
+    }
+
     fn decide(&mut self, sign: Sign) -> Sign {
         self.decisions += 1;
         sign
@@ -92,7 +106,10 @@ impl Signs for RationalSigns {
     }
 
     fn add_plane(&mut self, plane: &Plane) -> u32 {
-        self.planes.push(RationalPlane::new(plane));
+        let RationalPlane { normal: [x, y, z], offset } = RationalPlane::new(plane);
+        let offset = offset * BigRational::from_integer(self.scale.clone());
+        let [x, y, z, offset] = whole(&[x, y, z, offset]);
+        self.planes.push(([x, y, z], offset));
         self.planes.len() as u32 - 1
     }
 
@@ -108,7 +125,7 @@ impl Signs for RationalSigns {
     }
 
     fn height(&mut self, point: DVec3, plane: u32) -> Sign {
-        let sign = sign_of(&self.planes[plane as usize].height(&exact(point)));
+        let sign = self.height_at(&self.planes[plane as usize], point);
         self.decide(sign)
     }
 
@@ -133,9 +150,8 @@ impl Signs for RationalSigns {
     }
 
     fn box_outside(&mut self, sides: &[HalfSphere], corners: [DVec3; 2]) -> bool {
-        let scaled = |x: &BigRational| x.numer() * (&self.scale / x.denom());
-        let eye = [0, 1, 2].map(|k| scaled(&self.eye[k]));
-        let [low, high] = corners.map(|corner| [0, 1, 2].map(|k| scaled(&rational(corner[k])) - &eye[k]));
+        let from_eye = |p: DVec3| [0, 1, 2].map(|k| self.scaled(p[k]) - &self.scaled_eye[k]);
+        let [low, high] = corners.map(from_eye);
         sides.iter().any(|side| {
             let normal = &self.normals[side.splitter as usize];
             // The corner that lies furthest on the inside.
@@ -151,10 +167,10 @@ impl Signs for RationalSigns {
         let plane = &self.planes[plane as usize];
         // The corner that lies furthest on the other side.
         let corner = [0, 1, 2].map(|k| {
-            let up = plane.normal[k].is_negative() == side.is_positive();
-            rational(if up { high[k] } else { low[k] })
+            let up = plane.0[k].is_negative() == side.is_positive();
+            if up { high[k] } else { low[k] }
         });
-        sign_of(&plane.height(&corner)) * side != Sign::Negative
+        self.height_at(plane, DVec3::from(corner)) == side
     }
 
     fn rounded(&self, splitter: u32) -> DVec3 {
@@ -178,9 +194,9 @@ fn exact(v: DVec3) -> Vector<BigRational> {
 }
 
 /// The multiple of a vector, by a positive factor, that is whole and has no common divisor.
-fn whole(v: &Vector<BigRational>) -> Vector<BigInt> {
+fn whole<const N: usize>(v: &[BigRational; N]) -> [BigInt; N] {
     let denominator = v.iter().fold(BigInt::from(1), |all, x| all.lcm(x.denom()));
-    let whole = [0, 1, 2].map(|k| v[k].numer() * (&denominator / v[k].denom()));
+    let whole = v.each_ref().map(|x| x.numer() * (&denominator / x.denom()));
     let divisor = whole.iter().fold(BigInt::zero(), |all, x| all.gcd(x));
     if divisor.is_zero() { whole } else { whole.map(|x| x / &divisor) }
 }

@@ -29,7 +29,7 @@ pub(super) trait Signs {
     /// True if the inside of a box certainly lies outside of one of the half spheres.
     fn box_outside(&mut self, sides: &[HalfSphere], corners: [DVec3; 2]) -> bool;
 
-    /// True if the inside of a box certainly lies on that side of a plane.
+    /// True if a box certainly lies on that side of a plane, and does not touch it.
     fn box_beyond(&mut self, plane: u32, side: Sign, corners: [DVec3; 2]) -> bool;
 
     /// A normal in floating point, for messages and for what need not be exact.
