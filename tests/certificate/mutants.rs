@@ -102,7 +102,7 @@ fn a_relabelled_cell_is_refused_for_its_label() {
     let mut random = Random(3);
     for (name, scene, evidence) in subjects() {
         // All cells of small scenes, among them those with coplanar, crossing and edge-on polygons.
-        let few = scene.piece_count() > 30;
+        let few = scene.piece_count() > 12;
         let cells: Vec<usize> =
             if few { vec![random.below(evidence.cells.len())] } else { (0..evidence.cells.len()).collect() };
         let mut changed = evidence.clone();
