@@ -47,10 +47,25 @@ impl Random {
     }
 }
 
-/// Three edges from one point: their planes all hold the line of sight to it.
+/// Three edges through one point, which is the end of none of them: their planes all hold the line of sight to it.
 fn zero_edges(random: &mut Random, input: Input) -> [Splitter; 3] {
+    // On a grid of twice the last place, so that what is as far from it on the other side needs no rounding.
+    let grid = |x: f64| {
+        let digits = if input == Input::Single { 22 } else { 51 };
+        2f64.powi(x.abs().log2().floor() as i32 - digits)
+    };
     let apex = random.point(input);
-    [(); 3].map(|()| Splitter::Edge([apex, random.point(input)]))
+    let apex = DVec3::from(apex.to_array().map(|x| (x / grid(x)).round() * grid(x)));
+    [(); 3].map(|()| {
+        let unit = [(); 3].map(|()| (random.bits() >> 11) as f64 / 2f64.powi(52) - 1.0);
+        let step = DVec3::from([0, 1, 2].map(|k| {
+            let g = grid(apex[k]);
+            (unit[k] * 2f64.powi(if input == Input::Single { 22 } else { 51 })).round() * g
+        }));
+        let ends = [apex - step, apex + step];
+        assert!(ends[0] + step == apex && ends[1] - step == apex, "the ends need no rounding");
+        Splitter::Edge(ends)
+    })
 }
 
 /// Three creases of planes that all hold one point: their great circles meet there.
@@ -104,6 +119,21 @@ fn orientation(c: &mut Criterion) {
             });
             report(kernel.stats());
         }
+    }
+    for (input, name) in Input::ALL {
+        // Many, one after the other.
+        let mut random = Random(1);
+        let eye = random.point(input);
+        let mut kernel = Kernel::new([], eye);
+        let mut edge = || kernel.add_splitter(&Splitter::Edge([random.point(input), random.point(input)]));
+        let triples = [(); CASES].map(|()| [edge(), edge(), edge()]);
+        group.bench_function(BenchmarkId::new("filter, 64 times three edges", name), |b| {
+            b.iter(|| {
+                let positive = |ids: &&_| kernel.orientation_of(**ids) == Sign::Positive;
+                black_box(&triples).iter().filter(positive).count()
+            });
+        });
+        report(kernel.stats());
     }
     group.finish();
 }
