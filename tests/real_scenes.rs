@@ -1,4 +1,4 @@
-//! Scenes that people made, next to the repository: views of each are compared with rays.
+//! Scenes that people made, next to the repository: views of each are proved, and compared with rays.
 
 mod common;
 
@@ -23,7 +23,7 @@ fn files(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
 }
 
 #[test]
-fn views_of_real_scenes_show_what_rays_meet() {
+fn views_of_real_scenes_are_proved_and_show_what_rays_meet() {
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes"));
     let mut paths = Vec::new();
     files(folder, "obj", &mut paths);
@@ -44,6 +44,9 @@ fn views_of_real_scenes_show_what_rays_meet() {
         let vertex = scene.vertices()[scene.vertices().len() / 2];
         for eye in [middle, outside, vertex, middle + half * random.in_cube(0.8)] {
             let image = bsp.view(&Viewpoint::free(eye), &Domain::Sphere).expect("a finite eye");
+            if let Err(defect) = image.certify() {
+                panic!("{} from {eye}: {}", path.display(), defect.to_rust(&image.evidence(), &scene));
+            }
             let total = image.solid_angles().total();
             assert!((total - 4.0 * std::f64::consts::PI).abs() < 1e-11, "{}: {total}", path.display());
             for _ in 0..100 {
