@@ -161,7 +161,7 @@ impl<S: Signs> Checker<'_, S> {
         };
         self.meets_cone(sides, other, work)
             && crease.is_none_or(|half| self.clip(&mut work.part, half))
-            && !(self.is_excused(piece, work) || self.is_excused(other, work))
+            && !(self.is_excused(piece, other, work) || self.is_excused(other, piece, work))
     }
 
     /// Where the corners of one piece are against the plane of another, seen from the eye.
@@ -193,16 +193,18 @@ impl<S: Signs> Checker<'_, S> {
         HalfSphere { splitter: self.signs.add(&Splitter::Crease(planes)), inside }
     }
 
-    /// True if the slivers recorded of a piece are all that the piece shows in `work.part`; else leaves there what is
-    /// not excused.
-    fn is_excused(&mut self, piece: PieceId, work: &mut Work) -> bool {
-        let slivers = &self.evidence.slivers;
-        slivers.iter().filter(|sliver| sliver.piece == piece).any(|sliver| self.cut_sliver(sliver, &mut work.part))
+    /// True if the slivers recorded of a piece are all that the piece shows in `work.part`, where another one is in
+    /// wrong order with it; else leaves there what is not excused.
+    fn is_excused(&mut self, piece: PieceId, other: PieceId, work: &mut Work) -> bool {
+        self.slivers_of(piece).into_iter().any(|sliver| self.cut_sliver(sliver, other, &mut work.part))
     }
 
     /// Cuts off what is seen of a piece through a recorded sliver; true if nothing is left.
-    fn cut_sliver(&mut self, sliver: &EvidenceSliver, part: &mut Vec<HalfSphere>) -> bool {
-        let own = self.scene.resolve_plane(self.scene.piece(sliver.piece).plane());
+    ///
+    /// A sliver puts its piece in wrong order only with what comes within epsilon of the plane too: what lies between the
+    /// sliver and the plane, seen from the eye. Unless the eye itself is that near: then it may look along the plane.
+    fn cut_sliver(&mut self, sliver: &EvidenceSliver, other: PieceId, part: &mut Vec<HalfSphere>) -> bool {
+        let [own, other] = [sliver.piece, other].map(|id| self.scene.resolve_plane(self.scene.piece(id).plane()));
         let plane = self.scene.resolve_plane(sliver.plane);
         let splitter = self.signs.add(&Splitter::Crease([own, plane]));
         let height = self.height(sliver.piece);
@@ -215,24 +217,39 @@ impl<S: Signs> Checker<'_, S> {
             Some(Side::Front) => (self.clip(&mut excused, front), Some(back)),
             Some(Side::Back) => (self.clip(&mut excused, back), Some(front)),
         };
-        if !is_there || !self.is_within_epsilon(&excused, &own, &plane) {
+        let own_heights = self.rounded_heights(&excused, &own, &plane);
+        let other_heights = self.rounded_heights(&excused, &other, &plane);
+        let [m, b] = rounded_plane(&plane);
+        let eye_height = m.dot(self.evidence.eye - b);
+        let limit = self.sliver_limit();
+        let comes_near = [other_heights, [eye_height; 2]].iter().any(|[low, high]| *low <= limit && *high >= -limit);
+        let [low, high] = own_heights;
+        if !(is_there && comes_near && low >= -limit && high <= limit) {
             return false;
         }
         rest.is_none_or(|half| !self.clip(part, half))
     }
 
-    /// True if a polygon's corners, put on a plane, are no further than epsilon from another plane.
+    /// How far a sliver may reach, as the splitter measures it in floating point; below 0 if there can be none.
     ///
-    /// In floating point, as the splitter measures it, on corners that are rounded: so up to 1e-9 of the
-    /// scene's size, or of epsilon, is allowed on top.
-    fn is_within_epsilon(&self, part: &[HalfSphere], own: &Plane, plane: &Plane) -> bool {
-        let limit = self.evidence.epsilon * (1.0 + 1e-9) + 1e-9 * self.scene.diagonal();
+    /// Heights are measured on corners that are rounded: so up to 1e-9 of the scene's size, or of epsilon, is allowed
+    /// on top.
+    fn sliver_limit(&self) -> f64 {
+        let epsilon = self.evidence.epsilon;
+        if epsilon > 0.0 { epsilon * (1.0 + 1e-9) + 1e-9 * self.scene.diagonal() } else { -1.0 }
+    }
+
+    /// The least and the greatest height over a plane of a polygon's corners, put on a plane of their own.
+    fn rounded_heights(&self, part: &[HalfSphere], own: &Plane, plane: &Plane) -> [f64; 2] {
         let ([n, a], [m, b]) = (rounded_plane(own), rounded_plane(plane));
         let eye = self.evidence.eye;
-        (0..part.len()).all(|k| {
+        let heights = (0..part.len()).map(|k| {
             let d = self.rounded([part[k.checked_sub(1).unwrap_or(part.len() - 1)], part[k]]);
-            let point = eye + d * (n.dot(a - eye) / n.dot(d));
-            self.evidence.epsilon > 0.0 && m.dot(point - b).abs() <= limit
+            m.dot(eye + d * (n.dot(a - eye) / n.dot(d)) - b)
+        });
+        // What is no number is as far away as can be.
+        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| {
+            if height.is_nan() { [f64::NEG_INFINITY, f64::INFINITY] } else { [low.min(height), high.max(height)] }
         })
     }
 
