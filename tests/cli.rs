@@ -417,7 +417,7 @@ fn help_has_an_example_for_every_command() {
     let folder = Folder::new("help");
     assert!(folder.run("--help", 0).contains("contour"));
     assert!(folder.run("--version", 0).starts_with("nusselt 0."));
-    for command in ["info", "contour", "scene"] {
+    for command in ["info", "contour", "verify", "scene"] {
         let help = folder.run(&format!("{command} --help"), 0);
         assert!(help.contains("Example") && help.contains(&format!("nusselt {command} ")), "{command}");
     }

@@ -2,7 +2,9 @@
 
 use crate::contour::{ContourImage, Domain};
 use crate::integral::{PolygonSum, Sums};
+use crate::io::json::{field, rows};
 use crate::scene::{ObjectId, Side};
+use crate::verify::Certificate;
 use serde::Serialize;
 use std::io::{self, BufWriter, Write};
 
@@ -60,6 +62,26 @@ pub struct ObjectRow<'a> {
     pub share: Share,
 }
 
+/// That an image was proved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct CertificateRow {
+    /// Always true: an image whose proof fails is not written.
+    pub valid: bool,
+    /// The cells.
+    pub cells: usize,
+    /// The great circles on which their sides lie.
+    pub great_circles: usize,
+    /// The signs that were decided exactly.
+    pub exact_decisions: u64,
+}
+
+impl From<Certificate> for CertificateRow {
+    fn from(certificate: Certificate) -> Self {
+        let Certificate { cells, great_circles, exact_decisions } = certificate;
+        Self { valid: true, cells, great_circles, exact_decisions }
+    }
+}
+
 /// Everything about a contour image but its cells.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ContourSummary<'a> {
@@ -81,10 +103,13 @@ pub struct ContourSummary<'a> {
     pub background: Share,
     /// All of it.
     pub total: Share,
+    /// That the image was proved; left out of the file if it was not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<CertificateRow>,
 }
 
 impl<'a> ContourSummary<'a> {
-    /// Sums up an image. Costs one pass over its cells.
+    /// Sums up an image, without a certificate: set that if there is one. Costs one pass over its cells.
     pub fn new(image: &'a ContourImage) -> Self {
         let scene = image.bsp().scene();
         let angles = image.solid_angles();
@@ -122,6 +147,7 @@ impl<'a> ContourSummary<'a> {
             polygons,
             background: share_of(|sums| sums.background),
             total: share_of(Sums::total),
+            certificate: None,
         }
     }
 }
@@ -176,31 +202,18 @@ pub fn write_contour_json(image: &ContourImage, summary: &ContourSummary<'_>, ou
         let row = CellRow { polygon: cell.polygon().map(|id| id.0), side, boundary: &boundary, share };
         Ok(serde_json::to_writer(out, &row)?)
     })?;
+    writeln!(out, ",")?;
     rows(&mut out, "polygons", &summary.polygons, |out, row| Ok(serde_json::to_writer(out, row)?))?;
+    writeln!(out, ",")?;
     rows(&mut out, "objects", &summary.objects, |out, row| Ok(serde_json::to_writer(out, row)?))?;
+    writeln!(out, ",")?;
     field(&mut out, "background", &summary.background)?;
     write!(out, "\"total\": ")?;
     serde_json::to_writer(&mut out, &summary.total)?;
+    if let Some(certificate) = &summary.certificate {
+        write!(out, ",\n\"certificate\": ")?;
+        serde_json::to_writer(&mut out, certificate)?;
+    }
     writeln!(out, "}}")?;
     out.flush()
-}
-
-fn field(out: &mut impl Write, name: &str, value: &impl Serialize) -> io::Result<()> {
-    write!(out, "\"{name}\": ")?;
-    serde_json::to_writer(&mut *out, value)?;
-    writeln!(out, ",")
-}
-
-fn rows<W: Write, T>(
-    out: &mut W,
-    name: &str,
-    items: impl IntoIterator<Item = T>,
-    mut write_row: impl FnMut(&mut W, T) -> io::Result<()>,
-) -> io::Result<()> {
-    write!(out, "\"{name}\": [")?;
-    for (k, item) in items.into_iter().enumerate() {
-        out.write_all(if k == 0 { b"\n" } else { b",\n" })?;
-        write_row(out, item)?;
-    }
-    writeln!(out, "\n],")
 }

@@ -5,8 +5,12 @@
 
 mod atomic;
 #[cfg(feature = "cli")]
+pub mod certificate;
+#[cfg(feature = "cli")]
 mod contour_json;
 mod error;
+#[cfg(feature = "cli")]
+mod json;
 mod lines;
 pub mod mtl;
 mod number;
@@ -16,7 +20,13 @@ mod visible_obj;
 
 pub use atomic::atomic_write;
 #[cfg(feature = "cli")]
-pub use contour_json::{CONTOUR_SCHEMA, ContourSummary, DomainRow, ObjectRow, PolygonRow, Share, write_contour_json};
+pub use certificate::{
+    CERTIFICATE_SCHEMA, CertificateError, KeptCertificate, SceneSize, read_certificate, write_certificate,
+};
+#[cfg(feature = "cli")]
+pub use contour_json::{
+    CONTOUR_SCHEMA, CertificateRow, ContourSummary, DomainRow, ObjectRow, PolygonRow, Share, write_contour_json,
+};
 pub use error::{Fault, Faults, ReadError};
 pub use svg::{SvgOptions, write_svg};
 pub use visible_obj::{fragment_groups, visible_groups};

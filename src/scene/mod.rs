@@ -107,6 +107,16 @@ pub enum SupportingPlane {
     Points([VertexId; 3]),
 }
 
+impl SupportingPlane {
+    /// The three vertices, if it is given by those.
+    pub fn points(&self) -> Option<[VertexId; 3]> {
+        match *self {
+            Self::Points(points) => Some(points),
+            Self::Axis { .. } => None,
+        }
+    }
+}
+
 /// Which side of a polygon is meant or seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Side {

@@ -2,7 +2,7 @@
 
 use super::certificate::Certificate;
 use super::defect::{Defect, rounded_crossing};
-use super::evidence::{Evidence, EvidenceDomain, HalfSphere};
+use super::evidence::{Evidence, EvidenceDomain, EvidenceSliver, HalfSphere};
 use super::signs::Signs;
 use crate::exact;
 use crate::exact::Sign;
@@ -29,7 +29,15 @@ pub(super) struct Checker<'a, S> {
     edges: Vec<u32>,
     /// On which side of each plane of the scene the eye is.
     pub(super) heights: Vec<Sign>,
+    /// The slivers of the evidence, by their piece.
+    slivers: Vec<u32>,
+    /// So many slivers may still be looked at.
+    excuses_left: u64,
 }
+
+/// So many slivers are looked at, at most, for excuses: about a minute. An honest image needs a few for each place
+/// where it shows what is hidden.
+const EXCUSES: u64 = 1 << 26;
 
 impl<'a, S: Signs> Checker<'a, S> {
     /// Takes in evidence whose form was checked.
@@ -60,6 +68,8 @@ impl<'a, S: Signs> Checker<'a, S> {
             starts: vec![0],
             edges,
             heights,
+            slivers: (0..evidence.slivers.len() as u32).collect(),
+            excuses_left: EXCUSES,
         };
         checker.horizon = checker.add_horizon()?;
         let seen = evidence.cells.iter().filter_map(|cell| cell.piece);
@@ -68,7 +78,12 @@ impl<'a, S: Signs> Checker<'a, S> {
                 checker.edge(edge.index());
             }
         }
-        checker.circles = checker.signs.great_circles();
+        checker.circles = checker.signs.great_circles().ok_or_else(|| Defect::Malformed {
+            place: "splitters".to_owned(),
+            what: "too many of them nearly coincide to be told apart in reasonable time",
+        })?;
+        let slivers = &evidence.slivers;
+        checker.slivers.sort_by_key(|&k| slivers[k as usize].piece);
         for cell in &evidence.cells {
             for (k, &side) in cell.sides.iter().enumerate() {
                 let before = cell.sides[k.checked_sub(1).unwrap_or(cell.sides.len() - 1)];
@@ -156,6 +171,17 @@ impl<'a, S: Signs> Checker<'a, S> {
             let inside = if forward == front_seen { Sign::Negative } else { Sign::Positive };
             out.push(HalfSphere { splitter: self.edge(edge.index()), inside });
         }
+    }
+
+    /// The slivers recorded of a piece; fewer, if too many were looked at already.
+    pub(super) fn slivers_of(&mut self, piece: PieceId) -> Vec<&'a EvidenceSliver> {
+        let evidence = self.evidence;
+        let of = |k: &u32| evidence.slivers[*k as usize].piece;
+        let first = self.slivers.partition_point(|k| of(k) < piece);
+        let own = self.slivers[first..].iter().take_while(|k| of(k) == piece).take(self.excuses_left as usize);
+        let own: Vec<_> = own.map(|&k| &evidence.slivers[k as usize]).collect();
+        self.excuses_left -= own.len() as u64;
+        own
     }
 
     /// On which side of its plane, as that is oriented, a piece has the eye.

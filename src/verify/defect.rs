@@ -1,9 +1,10 @@
 //! What is wrong with a claimed contour image, and where.
 
-use super::evidence::Evidence;
+use super::evidence::{Evidence, EvidenceDomain};
 use crate::exact::Sign;
 use crate::scene::{PieceId, PieceRef, PolygonId, Scene, Splitter, SupportingPlane, VertexId};
 use glam::DVec3;
+use rustc_hash::FxHashSet;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
@@ -55,8 +56,9 @@ pub enum Defect {
     },
     /// Along a stretch of a great circle the cells on the two sides do not balance (rule B).
     #[error(
-        "between {} and {} on the great circle of {circle:?}, {count} more cells end from the left than from the \
-         right, not {expected}; cells there: {cells:?}", show(stretch[0]), show(stretch[1])
+        "there is a gap or an overlap from {} to {} along the great circle {}: the cells on its left less those on its \
+         right are {count}, not {expected}; cells there: {}",
+        show(stretch[0]), show(stretch[1]), show_circle(circle), list(cells)
     )]
     Unbalanced {
         /// The great circle; left is its positive side.
@@ -71,7 +73,7 @@ pub enum Defect {
         cells: Vec<u32>,
     },
     /// A direction lies in the wrong number of cells (rule C).
-    #[error("direction {} lies in cells {cells:?}, not in {expected}", show(*direction))]
+    #[error("direction {} lies in {} cells, not in {expected}: {}", show(*direction), cells.len(), list(cells))]
     Covered {
         /// The direction; exact.
         direction: DVec3,
@@ -152,17 +154,19 @@ impl Defect {
     /// them; ascending.
     pub fn polygons(&self, evidence: &Evidence, scene: &Scene) -> Vec<PolygonId> {
         let mut pieces = BTreeSet::new();
-        let mut vertices = BTreeSet::new();
+        let mut vertices: BTreeSet<VertexId> = BTreeSet::new();
         let mut note_plane = |plane: &SupportingPlane| match plane {
             SupportingPlane::Points(points) => vertices.extend(*points),
             SupportingPlane::Axis { .. } => {}
         };
-        let mut edges = Vec::new();
+        let mut edges = FxHashSet::default();
         for cell in self.cells().iter().filter_map(|&cell| evidence.cells.get(cell as usize)) {
             pieces.extend(cell.piece);
             for side in &cell.sides {
                 match evidence.splitters.get(side.splitter as usize) {
-                    Some(Splitter::Edge(ends)) => edges.push(*ends),
+                    Some(Splitter::Edge([a, b])) => {
+                        edges.insert([*a.min(b), *a.max(b)]);
+                    }
                     Some(Splitter::Crease(planes)) => planes.iter().for_each(&mut note_plane),
                     Some(Splitter::Parallel(plane)) => note_plane(plane),
                     Some(Splitter::Given(_)) | None => {}
@@ -174,12 +178,12 @@ impl Defect {
             Self::Hidden { by, .. } => pieces.extend([*by]),
             _ => {}
         }
-        let vertices: Vec<VertexId> = vertices.into_iter().collect();
-        let has = |corners: &[VertexId], wanted: &[VertexId]| wanted.iter().all(|v| corners.contains(v));
+        if let EvidenceDomain::Above(piece, _) = evidence.domain {
+            pieces.insert(piece);
+        }
         let bounding = scene.pieces().filter(|piece| {
-            let corners = piece.vertices();
-            edges.iter().any(|ends| has(corners, ends))
-                || matches!(piece.plane(), SupportingPlane::Points(points) if has(&vertices, &points))
+            let has_edge = piece.edges().iter().any(|edge| edges.contains(&scene.edges()[edge.index()]));
+            has_edge || piece.plane().points().is_some_and(|points| points.iter().all(|v| vertices.contains(v)))
         });
         let named = pieces.iter().filter(|piece| piece.index() < scene.piece_count()).map(|&piece| scene.piece(piece));
         let polygons: BTreeSet<PolygonId> = bounding.chain(named).map(PieceRef::polygon).collect();
@@ -188,8 +192,16 @@ impl Defect {
 
     /// The eye and the polygons that take part as Rust, to paste into a test.
     pub fn to_rust(&self, evidence: &Evidence, scene: &Scene) -> String {
-        let mut text = format!("// {self}\nlet eye = {};\n", point(evidence.eye));
-        let _ = writeln!(text, "// domain: {:?}\nlet polygons: &[&[DVec3]] = &[", evidence.domain);
+        let domain = match evidence.domain {
+            EvidenceDomain::Sphere => "all directions".to_owned(),
+            EvidenceDomain::Hemisphere(normal) => format!("the hemisphere about {}", point(normal)),
+            EvidenceDomain::Above(piece, side) if piece.index() < scene.piece_count() => {
+                format!("above the {side:?} of polygon {}", scene.piece(piece).polygon())
+            }
+            EvidenceDomain::Above(piece, side) => format!("above the {side:?} of piece {piece}, which does not exist"),
+        };
+        let mut text = format!("// {self}\n// domain: {domain}\n// epsilon: {:?}\n", evidence.epsilon);
+        let _ = writeln!(text, "let eye = {};\nlet polygons: &[&[DVec3]] = &[", point(evidence.eye));
         for polygon in self.polygons(evidence, scene) {
             let polygon = scene.polygon(polygon);
             for ring in polygon.rings() {
@@ -208,6 +220,35 @@ fn point(p: DVec3) -> String {
 
 fn show(d: DVec3) -> String {
     format!("({}, {}, {})", d.x, d.y, d.z)
+}
+
+/// So many cells of a list are shown.
+const LISTED: usize = 12;
+
+fn list(cells: &[u32]) -> String {
+    if cells.is_empty() {
+        return "none".to_owned();
+    }
+    let shown: Vec<String> = cells.iter().take(LISTED).map(u32::to_string).collect();
+    let more = cells.len() - shown.len();
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    shown.join(", ") + &more
+}
+
+fn show_circle(circle: &Splitter) -> String {
+    match circle {
+        Splitter::Edge([a, b]) => format!("through vertices {a} and {b}"),
+        Splitter::Crease([p, q]) => format!("through the crease of {} and {}", show_plane(p), show_plane(q)),
+        Splitter::Given(normal) => format!("with normal {}", show(*normal)),
+        Splitter::Parallel(plane) => format!("parallel to {}", show_plane(plane)),
+    }
+}
+
+fn show_plane(plane: &SupportingPlane) -> String {
+    match plane {
+        SupportingPlane::Axis { axis, value } => format!("plane {} = {value}", ["x", "y", "z"][*axis as usize]),
+        SupportingPlane::Points([a, b, c]) => format!("the plane of vertices {a}, {b} and {c}"),
+    }
 }
 
 /// The unit direction in which two half spheres' great circles cross, counter-clockwise from the first.

@@ -6,6 +6,9 @@ use crate::exact::{ApproxPlane, CircleRelation, Direction, Kernel, Plane, Point,
 use crate::scene::Scene;
 use glam::DVec3;
 
+/// So many pairs of great circles are compared at most, beside a few for each: about a minute.
+const COMPARISONS: usize = 1 << 26;
+
 /// The kernel, with what it was asked to take in.
 pub(super) struct KernelSigns {
     kernel: Kernel,
@@ -48,18 +51,21 @@ impl Signs for KernelSigns {
 
     /// Equal great circles have the same cosine with any fixed axis, but for rounding. Sorted by that, only
     /// those closer than what rounding can do are compared exactly.
-    fn great_circles(&mut self) -> Vec<(u32, Sign)> {
+    fn great_circles(&mut self) -> Option<Vec<(u32, Sign)>> {
         let axis = DVec3::new(0.541_196_1, 0.306_562_96, 0.783_036_4);
         let cosine = |k: u32| self.rounded(k).normalize_or_zero().dot(axis).abs();
         let mut order: Vec<(f64, u32)> = (0..self.ids.len() as u32).map(|k| (cosine(k), k)).collect();
         order.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let mut circles = vec![(0, Sign::Positive); self.ids.len()];
         let mut firsts: Vec<(f64, u32)> = Vec::new();
+        // A few comparisons a circle are needed where nobody has put thousands within 1e-12 of each other.
+        let mut left = COMPARISONS + 16 * order.len();
         for (cosine, k) in order {
             // The kernel knows a normal to 1e-13 of its largest component or better, so each cosine is off by
             // less than 4e-13.
-            let near = firsts.iter().rev().take_while(|first| cosine - first.0 < 1e-12);
+            let near = firsts.iter().rev().take_while(|first| cosine - first.0 < 1e-12).take(left);
             let known = near.map(|first| first.1).find_map(|first| {
+                left = left.saturating_sub(1);
                 let [a, b] = [first, k].map(|s| self.ids[s as usize]);
                 match self.kernel.compare_circles_of(a, b) {
                     CircleRelation::Same => Some((first, Sign::Positive)),
@@ -67,12 +73,15 @@ impl Signs for KernelSigns {
                     CircleRelation::Different => None,
                 }
             });
+            if left == 0 {
+                return None;
+            }
             circles[k as usize] = known.unwrap_or_else(|| {
                 firsts.push((cosine, k));
                 (k, Sign::Positive)
             });
         }
-        circles
+        Some(circles)
     }
 
     fn box_outside(&mut self, sides: &[HalfSphere], [low, high]: [DVec3; 2]) -> bool {

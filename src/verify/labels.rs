@@ -199,8 +199,8 @@ impl<S: Signs> Checker<'_, S> {
     /// At a node of the 3D BSP that parts two pieces, the order is wrong only where the one that was left uncut lies
     /// beyond the node's plane, by less than epsilon, and the other one between that plane and it.
     fn is_excused(&mut self, pieces: [PieceId; 2], work: &mut Work) -> bool {
-        let slivers = self.evidence.slivers.iter().filter(|sliver| pieces.contains(&sliver.piece));
-        slivers.into_iter().any(|sliver| self.cut_sliver(sliver, pieces, &mut work.part))
+        let slivers = pieces.map(|piece| self.slivers_of(piece));
+        slivers.into_iter().flatten().any(|sliver| self.cut_sliver(sliver, pieces, &mut work.part))
     }
 
     /// Cuts off what is seen of a piece through a recorded sliver; true if nothing is left.

@@ -130,7 +130,7 @@ impl Signs for RationalSigns {
     }
 
     /// Whole vectors without common factors are equal or opposite where their great circles are one.
-    fn great_circles(&mut self) -> Vec<(u32, Sign)> {
+    fn great_circles(&mut self) -> Option<Vec<(u32, Sign)>> {
         let mut firsts: HashMap<&Vector<BigInt>, u32> = HashMap::new();
         let mut circles = Vec::with_capacity(self.normals.len());
         for (k, normal) in (0..).zip(&self.normals) {
@@ -146,7 +146,7 @@ impl Signs for RationalSigns {
             }));
         }
         self.decisions += circles.len() as u64;
-        circles
+        Some(circles)
     }
 
     fn box_outside(&mut self, sides: &[HalfSphere], corners: [DVec3; 2]) -> bool {

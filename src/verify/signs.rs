@@ -24,7 +24,9 @@ pub(super) trait Signs {
 
     /// For each splitter one on the same great circle that stands for all on it, and whether the two are
     /// oriented alike. Splitters without a great circle, as their normal is 0, stand for themselves.
-    fn great_circles(&mut self) -> Vec<(u32, Sign)>;
+    ///
+    /// `None` if so many of them nearly coincide that telling them apart would take too long.
+    fn great_circles(&mut self) -> Option<Vec<(u32, Sign)>>;
 
     /// True if the inside of a box certainly lies outside of one of the half spheres.
     fn box_outside(&mut self, sides: &[HalfSphere], corners: [DVec3; 2]) -> bool;

@@ -44,21 +44,36 @@ impl<S: Signs> Checker<'_, S> {
         Ok(circles)
     }
 
-    /// A: all corners but its own two lie strictly inside of every side.
+    /// A: all corners but its own two lie strictly inside of every side, `det[n_j, n_k, n_(k+1)] > 0` for all `j` other
+    /// than `k` and `k + 1`.
+    ///
+    /// That follows from three determinants a side, so that a cell of any number of sides costs no more than it
+    /// has. Look along `n_0`: (1) `det[n_0, n_1, n_k] > 0` for `k >= 2` says that the other normals lie within half a
+    /// turn about `n_0`, counter-clockwise from `n_1`; (2) `det[n_0, n_k, n_(k+1)] > 0` says that they follow each
+    /// other in that half turn. So the normals are the corners of a simple polygon, a fan of triangles about `n_0`,
+    /// and lie on half a sphere. (3) `det[n_(k-1), n_k, n_(k+1)] > 0` says that it turns left at every corner:
+    /// a simple polygon on half a sphere that does is convex, which is what is to be shown.
     fn check_convex(&mut self, cell: u32) -> Result<(), Defect> {
         let sides = self.cell(cell).to_vec();
+        let len = sides.len();
         let not_convex =
             |corner: usize, side: usize| Defect::NotConvex { cell, corner: corner as u32, side: side as u32 };
-        if sides.len() < 3 {
+        if len < 3 {
             return Err(not_convex(0, 0));
         }
-        for (k, &before) in sides.iter().enumerate() {
-            let corner = (k + 1) % sides.len();
-            for (j, &side) in sides.iter().enumerate() {
-                if j != k && j != corner && self.orientation([side, before, sides[corner]]) != Sign::Positive {
-                    return Err(not_convex(corner, j));
-                }
-            }
+        // The corner where side `k` ends against side `j`.
+        let mut check = |k: usize, j: usize| {
+            let corner = (k + 1) % len;
+            let inside = self.orientation([sides[j], sides[k], sides[corner]]).is_positive();
+            if inside { Ok(()) } else { Err(not_convex(corner, j)) }
+        };
+        for k in 1..len {
+            check(k, k - 1)?;
+        }
+        check(0, len - 1)?;
+        for k in 1..len - 1 {
+            check(k, 0)?;
+            check(0, k + 1)?;
         }
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use nusselt::scene::{PolygonId, Side};
+use nusselt::verify::Arithmetic;
 use std::num::NonZeroUsize;
 
 /// What all commands take.
@@ -76,4 +77,13 @@ pub(crate) fn parse_surface(text: &str) -> Result<(PolygonId, Side), String> {
     };
     let number = number.parse().map_err(|_| format!("{number:?} is not the number of a polygon, counted from 0"))?;
     Ok((PolygonId(number), side))
+}
+
+/// The arithmetic of a proof.
+pub(crate) fn parse_arithmetic(text: &str) -> Result<Arithmetic, String> {
+    match text {
+        "kernel" => Ok(Arithmetic::Kernel),
+        "rational" => Ok(Arithmetic::Rational),
+        _ => Err("there are kernel and rational".to_owned()),
+    }
 }

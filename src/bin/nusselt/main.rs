@@ -6,8 +6,10 @@ mod failure;
 mod info;
 mod input;
 mod output;
+mod proof;
 mod scene;
 mod summary;
+mod verify;
 
 use clap::Parser;
 use failure::Failure;
@@ -27,6 +29,7 @@ struct Program {
 enum Command {
     Info(info::Info),
     Contour(contour::Contour),
+    Verify(verify::Verify),
     Scene(scene::Scene),
 }
 
@@ -35,6 +38,7 @@ fn main() -> ExitCode {
         Ok(program) => match program.command {
             Command::Info(command) => command.run(&program.common),
             Command::Contour(command) => command.run(&program.common),
+            Command::Verify(command) => command.run(&program.common),
             Command::Scene(command) => command.run(&program.common),
         },
         Err(error) => failure::of_clap(&error),

@@ -68,7 +68,7 @@ pub(crate) fn keep<'a>(files: &[PathBuf], outputs: impl Iterator<Item = &'a Path
         for target in written(output) {
             if let Some(file) = files.iter().find(|file| is_same_file(file, &target)) {
                 let [output, file] = [output, file].map(Path::display);
-                let what = format!("-o {output} would overwrite {file}, which is read; name another file");
+                let what = format!("{output} would overwrite {file}, which is read; name another file");
                 return Err(Failure::Usage(what));
             }
         }

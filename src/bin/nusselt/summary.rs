@@ -11,15 +11,19 @@ pub(crate) struct Timing {
     pub(crate) views: usize,
     pub(crate) view_ms_mean: f64,
     pub(crate) view_ms_max: f64,
+    /// Around the proof, if there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) certify_ms: Option<f64>,
     pub(crate) threads: usize,
 }
 
 impl Timing {
     /// Of a command that makes these views, one after the other.
     pub(crate) fn new(load_s: f64, bsp_s: f64, view_ms: &[f64]) -> Self {
-        let mean = view_ms.iter().sum::<f64>() / view_ms.len().max(1) as f64;
+        // Not with sum, which is -0 for none.
+        let mean = view_ms.iter().fold(0.0, |sum, ms| sum + ms) / view_ms.len().max(1) as f64;
         let max = view_ms.iter().copied().fold(0.0, f64::max);
-        Self { load_s, bsp_s, views: view_ms.len(), view_ms_mean: mean, view_ms_max: max, threads: 1 }
+        Self { load_s, bsp_s, views: view_ms.len(), view_ms_mean: mean, view_ms_max: max, certify_ms: None, threads: 1 }
     }
 }
 

@@ -3,15 +3,17 @@
 mod place;
 mod report;
 
-use crate::args::{Common, Order, parse_direction, parse_point, parse_surface};
+use crate::args::{Common, Order, parse_arithmetic, parse_direction, parse_point, parse_surface};
 use crate::failure::Failure;
 use crate::input::{build, load};
-use crate::output::{is_same_file, print, print_json, write_file, write_obj};
+use crate::output::{is_same_file, print, print_json, write_file, write_obj, written};
+use crate::proof::{Proof, failed_image};
 use crate::summary::Timing;
 use glam::DVec3;
 use nusselt::contour::{ContourImage, Projection, Projector, ViewOptions};
-use nusselt::io::{ContourSummary, SvgOptions, visible_groups, write_contour_json, write_svg};
+use nusselt::io::{ContourSummary, SvgOptions, visible_groups, write_certificate, write_contour_json, write_svg};
 use nusselt::scene::{PolygonId, Side};
+use nusselt::verify::Arithmetic;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -23,7 +25,10 @@ The whole sphere around a point in the air, as a panorama with the contour tree
   nusselt contour room.obj --eye 2,1.5,1.2 --sphere -o tree.svg --show-tree
 
 From the back of polygon 17
-  nusselt contour room.obj --eye 2,1.5,0 --on 17:back --json";
+  nusselt contour room.obj --eye 2,1.5,0 --on 17:back --json
+
+The same with a proof that it is right, kept for nusselt verify
+  nusselt contour room.obj --eye 2,1.5,0 --on 17:back --certificate proof.json";
 
 /// Compute the contour image: exactly what is seen from a point, and how much of it
 #[derive(clap::Args)]
@@ -60,6 +65,14 @@ pub(crate) struct Contour {
     /// Levels of the quadtree at the top of the contour tree, 0 to 8 [default: by the size of the scene]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=8))]
     quadtree_depth: Option<u32>,
+    /// Prove that the image is right, for all directions, and say so; =rational shares no predicate with what made
+    /// the image, and takes about a hundred times as long. An image that fails is not written
+    #[arg(long, value_name = "kernel|rational", num_args = 0..=1, require_equals = true,
+        default_missing_value = "kernel", value_parser = parse_arithmetic)]
+    certify: Option<Arithmetic>,
+    /// Prove the image, as --certify does, and keep the evidence in this file, for nusselt verify
+    #[arg(long, value_name = "FILE.json", value_parser = parse_certificate)]
+    certificate: Option<PathBuf>,
     #[command(flatten)]
     order: Order,
 }
@@ -98,10 +111,16 @@ fn parse_projection(text: &str) -> Result<Projection, String> {
     named.ok_or_else(|| format!("there are {}", Projection::ALL.map(Projection::name).join(", ")))
 }
 
+fn parse_certificate(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    let is_json = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("json"));
+    if is_json { Ok(path) } else { Err("certificates are written as .json".to_owned()) }
+}
+
 impl Contour {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         let projection = self.check()?;
-        let outputs = self.output.iter().map(|output| output.path.as_path());
+        let outputs = self.output.iter().map(|output| &output.path).chain(&self.certificate).map(PathBuf::as_path);
         let (scene, load_s) = load(&self.scene, outputs, common)?;
         let (viewpoint, domain) = self.stand(&scene)?;
         let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
@@ -110,8 +129,14 @@ impl Contour {
         let image =
             bsp.view_with(&viewpoint, &domain, &options).map_err(|error| Failure::about(&self.scene, &error))?;
         let view_ms = start.elapsed().as_secs_f64() * 1e3;
-        let timing = Timing::new(load_s, bsp_s, &[view_ms]);
-        let summary = ContourSummary::new(&image);
+        let mut timing = Timing::new(load_s, bsp_s, &[view_ms]);
+        let mut summary = ContourSummary::new(&image);
+        // Before anything is written.
+        let proof = self.prove(&image)?;
+        if let Some(proof) = &proof {
+            timing.certify_ms = Some(proof.certify_ms);
+            summary.certificate = Some(proof.certificate.into());
+        }
         for output in &self.output {
             self.write(output, projection, &image, &summary)?;
         }
@@ -122,8 +147,11 @@ impl Contour {
             return Ok(());
         }
         let mut lines = report::in_words(&image, &summary, timing);
-        for output in &self.output {
-            lines.add("wrote", output.path.display());
+        if let Some(proof) = &proof {
+            proof.tell(&mut lines);
+        }
+        for path in self.output.iter().map(|output| &output.path).chain(&self.certificate) {
+            lines.add("wrote", path.display());
         }
         print(&lines.0)
     }
@@ -137,12 +165,39 @@ impl Contour {
                 return usage(format!("-o {path} is given twice; name each file once"));
             }
         }
+        if let Some(certificate) = &self.certificate
+            && self
+                .output
+                .iter()
+                .flat_map(|output| written(&output.path))
+                .any(|other| is_same_file(&other, certificate))
+        {
+            let path = certificate.display();
+            return usage(format!("--certificate {path} is also written by -o; name each file once"));
+        }
         let default = if self.sphere { Projection::Equirectangular } else { Projection::Nusselt };
         let projection = self.projection.unwrap_or(default);
         if self.sphere && projection == Projection::Nusselt {
             return usage(format!("--projection: {}", nusselt::contour::ProjectionError::NotAHemisphere));
         }
         Ok(projection)
+    }
+
+    /// Proves the image if that is asked for, and keeps the evidence.
+    fn prove(&self, image: &ContourImage) -> Result<Option<Proof>, Failure> {
+        let Some(arithmetic) = self.certify.or(self.certificate.as_ref().map(|_| Arithmetic::Kernel)) else {
+            return Ok(None);
+        };
+        let start = Instant::now();
+        let evidence = image.evidence();
+        let scene = image.bsp().scene();
+        let outcome = evidence.check(scene, arithmetic);
+        let certify_ms = start.elapsed().as_secs_f64() * 1e3;
+        let certificate = outcome.map_err(|defect| failed_image(&self.scene, scene, &evidence, &defect))?;
+        if let Some(path) = &self.certificate {
+            write_file(path, |out| write_certificate(&evidence, scene, out))?;
+        }
+        Ok(Some(Proof::new(certificate, &evidence, arithmetic, certify_ms)))
     }
 
     fn write(
