@@ -32,6 +32,7 @@
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
 //! | [`io`] | reading scenes, writing results |
 //! | [`verify`] | an exact ray oracle that shares nothing with the engine |
+//! | `testing` | with the feature of that name: strategies, degenerate scenes and checks for property tests |
 //!
 //! Source: P. Jacob, *Evaluation of a BRDF using BSP Trees*, Interner Bericht 272/95, University of
 //! Kaiserslautern, 1995.
@@ -43,6 +44,8 @@ pub mod integral;
 pub mod io;
 pub mod samples;
 pub mod scene;
+#[cfg(feature = "testing")]
+pub mod testing;
 pub mod verify;
 
 #[cfg(doctest)]

@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// From the lowest to the highest; each may use those before it.
-const LAYERS: [&str; 9] = ["exact", "geometry", "scene", "bsp", "contour", "integral", "samples", "io", "verify"];
+const LAYERS: [&str; 10] =
+    ["exact", "geometry", "scene", "bsp", "contour", "integral", "samples", "io", "verify", "testing"];
 
 /// What a module may not use although it is lower: the verifiers share nothing with what they verify.
 const FORBIDDEN: [(&str, &str); 1] = [("verify", "bsp")];
