@@ -38,6 +38,7 @@ pub use case::{Case, CaseError, Outlook, case, case_of};
 pub use check::{
     Defect, FragmentFault, angle_tolerance, check_bsp, check_closed, check_fragments, check_image, check_labels,
     check_mirror, check_order, check_same_bits, check_same_view, check_sums, check_tiling, inner_directions,
+    telling_directions,
 };
 pub use faces::Faces;
 pub use numbers::{
@@ -46,6 +47,6 @@ pub use numbers::{
 };
 pub use scenes::{
     INSIDE, closed_scene, coplanar_overlaps, cyclic_overlap, duplicates, interpenetrating, mesh_soup,
-    near_coplanar_pair, scene, t_junctions, triangle_soup,
+    near_coplanar_pair, point_inside, scene, t_junctions, triangle_soup,
 };
 pub use viewpoints::{free_viewpoint, viewpoint, viewpoint_in_plane, viewpoint_on_edge, viewpoint_on_vertex};

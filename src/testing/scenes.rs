@@ -5,7 +5,6 @@ use glam::DVec3;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::Index;
-use std::hash::{BuildHasher, Hash, Hasher};
 
 /// Every point whose coordinates are at most this in size lies strictly inside every [`closed_scene`].
 pub const INSIDE: f64 = 3.0;
@@ -42,6 +41,16 @@ pub fn closed_scene(mode: Mode) -> impl Strategy<Value = Faces> {
     })
 }
 
+/// A point within [`INSIDE`] of the origin in each coordinate: strictly inside of every [`closed_scene`].
+pub fn point_inside(mode: Mode) -> impl Strategy<Value = DVec3> {
+    let whole = || (-INSIDE as i8..=INSIDE as i8).prop_map(f64::from);
+    let any = || -INSIDE..INSIDE;
+    match mode {
+        Mode::Grid => [whole(), whole(), whole()].prop_map(DVec3::from).boxed(),
+        Mode::Chaos => [any(), any(), any()].prop_map(DVec3::from).boxed(),
+    }
+}
+
 /// A box or a tetrahedron on the grid, not flat.
 fn thing() -> impl Strategy<Value = Faces> {
     let low = || (-6i8..=4).prop_map(f64::from);
@@ -61,13 +70,15 @@ fn thing() -> impl Strategy<Value = Faces> {
 
 /// Up to 0.3 in each coordinate, a function of the point alone: vertices that coincide stay together.
 fn displacement(p: DVec3, seed: u64) -> DVec3 {
-    let amount = |axis: usize| {
-        let mut hasher = rustc_hash::FxBuildHasher.build_hasher();
-        (p.to_array().map(|x| (x + 0.0).to_bits()), axis, seed).hash(&mut hasher);
-        // A good mixer for what is a fast hash: SplitMix64's.
-        let z = hasher.finish().wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ z >> 31) >> 11) as f64 / 2f64.powi(53) * 0.6 - 0.3
+    let amount = |axis: u64| {
+        // SplitMix64's mixer over the seed, the axis and the coordinates (-0 = +0).
+        let mixed = p.to_array().into_iter().map(|x| (x + 0.0).to_bits()).fold(seed ^ axis, |state, bits| {
+            let z = (state ^ bits).wrapping_add(0x9E37_79B9_7F4A_7C15);
+            let z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+            let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+            z ^ z >> 31
+        });
+        (mixed >> 11) as f64 / 2f64.powi(53) * 0.6 - 0.3
     };
     DVec3::new(amount(0), amount(1), amount(2))
 }

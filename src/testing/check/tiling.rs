@@ -24,6 +24,11 @@ pub fn angle_tolerance<'a>(cells: impl IntoIterator<Item = Cell<'a>>) -> f64 {
     cells.into_iter().map(of_cell).sum()
 }
 
+/// NaN is not.
+pub(super) fn is_within(a: f64, b: f64, tolerance: f64) -> bool {
+    (a - b).abs() <= tolerance
+}
+
 /// Checks that the solid angles sum to the domain's, and the form factors, if the domain has a normal,
 /// to 1; up to [`angle_tolerance`], which divided by pi also bounds what moving the same corners does to form factors.
 ///
@@ -33,13 +38,12 @@ pub fn check_sums(image: &ContourImage) -> Result<(), Defect> {
     let tolerance = angle_tolerance(image.cells());
     let expected = if *image.domain() == Domain::Sphere { 4.0 * PI } else { 2.0 * PI };
     let total = image.solid_angles().total();
-    // Written so that NaN fails.
-    if !((total - expected).abs() <= tolerance) {
+    if !is_within(total, expected, tolerance) {
         return Err(Defect::SolidAngles { total, expected, tolerance });
     }
     if let Some(factors) = image.form_factors() {
         let (total, tolerance) = (factors.total(), tolerance / PI);
-        if !((total - 1.0).abs() <= tolerance) {
+        if !is_within(total, 1.0, tolerance) {
             return Err(Defect::FormFactors { total, tolerance });
         }
     }
@@ -125,9 +129,9 @@ fn horizon(image: &ContourImage, unit: Unit) -> Option<Vector> {
     }
 }
 
-/// At most 40 directions that are likely to tell: in cells, through vertices, between two vertices, along
+/// Up to 34 directions that are likely to tell whether cells tile: in cells, through vertices, between two vertices, along
 /// the axes.
-pub(super) fn telling_directions(image: &ContourImage) -> Vec<DVec3> {
+pub fn telling_directions(image: &ContourImage) -> Vec<DVec3> {
     const OF_A_KIND: usize = 10;
     let eye = image.viewpoint().eye();
     let cells = image.cells().step_by(image.cell_count().div_ceil(OF_A_KIND).max(1));
