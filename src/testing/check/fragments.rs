@@ -12,13 +12,11 @@ use crate::bsp::{FragmentRef, SceneBsp};
 use crate::exact::Point;
 use crate::scene::{PieceRef, Side};
 use crate::testing::integers::{Spot, Unit, Vector, cross, dot, resolved, sign};
-use num_bigint::BigInt;
-use num_rational::BigRational;
 use num_traits::Zero;
 use std::collections::BTreeMap;
 
-/// Checks exactly that the fragments of every piece tile it: no gap, no overlap. O(corners) a piece, in
-/// rational numbers.
+/// Checks exactly that the fragments of every piece tile it: no gap, no overlap. Cost: for each piece the square
+/// of the number of its fragments' corners, in integers of any length.
 ///
 /// # Errors
 /// The first piece whose fragments do not.
@@ -38,22 +36,33 @@ pub fn check_fragments(bsp: &SceneBsp) -> Result<(), Defect> {
 fn tiles(unit: Unit, piece: PieceRef<'_>, fragments: &[FragmentRef<'_>]) -> Result<(), FragmentFault> {
     let plane = unit.plane(&resolved(piece.scene(), piece.plane()));
     let view = Along::new(&plane.0, piece.facing());
-    let mut ends = Ends::default();
+    let mut corners = Corners::default();
+    let mut chain = Chain::default();
     for fragment in fragments {
-        let corners: Vec<Spot> = fragment.exact_corners().map(|corner| unit.spot(&corner)).collect();
-        if corners.iter().any(|corner| corner.w.is_zero() || !corner.height(&plane).is_zero()) {
-            return Err(FragmentFault::OffPlane(fragment.id()));
+        let mut around = Vec::new();
+        for point in fragment.exact_corners() {
+            let corner = corners.known(&point).or_else(|| {
+                let spot = unit.spot(&point);
+                let in_plane = !spot.w.is_zero() && spot.height(&plane).is_zero();
+                in_plane.then(|| corners.add(point, view.flat(spot)))
+            });
+            around.push(corner.ok_or(FragmentFault::OffPlane(fragment.id()))?);
         }
-        let corners: Vec<Vector> = corners.into_iter().map(|corner| view.flat(corner)).collect();
-        if !is_convex(&corners) {
+        if !corners.are_convex(&around) {
             return Err(FragmentFault::NotConvex(fragment.id()));
         }
-        ends.add(corners.iter().map(places));
+        chain.add(&around);
     }
-    let mut whole: Vec<Vector> = piece.points().map(|p| view.flat(unit.spot(&Point::Given(p)))).collect();
+    let mut whole: Vec<usize> = piece
+        .points()
+        .map(|p| {
+            let point = Point::Given(p);
+            corners.known(&point).unwrap_or_else(|| corners.add(point, view.flat(unit.spot(&point))))
+        })
+        .collect();
     whole.reverse();
-    ends.add(whole.iter().map(places));
-    if ends.cancel() { Ok(()) } else { Err(FragmentFault::Boundary) }
+    chain.add(&whole);
+    if chain.cancels(&corners) { Ok(()) } else { Err(FragmentFault::Boundary) }
 }
 
 /// A view along an axis that is not in the plane, from the side from which the piece runs counter-clockwise.
@@ -76,67 +85,85 @@ impl Along {
     }
 }
 
-/// Every corner is on the left of every side or on it, some strictly so, and no two coincide: then
-/// the boundary is convex and runs around once.
-fn is_convex(corners: &[Vector]) -> bool {
-    let mut any_area = false;
-    for (k, p) in corners.iter().enumerate() {
-        let side = cross(p, &corners[(k + 1) % corners.len()]);
-        // A side without length has no line.
-        if side.iter().all(BigInt::is_zero) {
-            return false;
+/// The corners of one piece's fragments, each once, wherever its definitions come from.
+#[derive(Default)]
+struct Corners {
+    definitions: Vec<(Point, usize)>,
+    /// Two coordinates and their positive denominator.
+    places: Vec<Vector>,
+}
+
+impl Corners {
+    fn known(&self, point: &Point) -> Option<usize> {
+        self.definitions.iter().find(|(known, _)| known == point).map(|&(_, place)| place)
+    }
+
+    /// Adds a definition, which may be of a place that is known.
+    fn add(&mut self, point: Point, place: Vector) -> usize {
+        let same = |other: &Vector| (0..2).all(|k| &place[k] * &other[2] == &other[k] * &place[2]);
+        let found = self.places.iter().position(same).unwrap_or(self.places.len());
+        if found == self.places.len() {
+            self.places.push(place);
         }
-        for corner in corners {
-            match sign(&dot(&side, corner)) {
-                -1 => return false,
-                1 => any_area = true,
-                _ => {}
+        self.definitions.push((point, found));
+        found
+    }
+
+    /// A multiple of the normal of the line from one to the other, and of its offset.
+    fn line(&self, [from, to]: [usize; 2]) -> Vector {
+        cross(&self.places[from], &self.places[to])
+    }
+
+    /// Every corner is on the left of every side or on it, some strictly so, and no two coincide: then
+    /// the boundary is convex and runs around once.
+    fn are_convex(&self, around: &[usize]) -> bool {
+        let mut any_area = false;
+        for (k, &from) in around.iter().enumerate() {
+            let side = self.line([from, around[(k + 1) % around.len()]]);
+            for &corner in around {
+                match sign(&dot(&side, &self.places[corner])) {
+                    -1 => return false,
+                    1 => any_area = true,
+                    _ => {}
+                }
             }
         }
+        let mut distinct = around.to_vec();
+        distinct.sort_unstable();
+        distinct.dedup();
+        any_area && distinct.len() == around.len()
     }
-    let mut distinct: Vec<Place> = corners.iter().map(places).collect();
-    distinct.sort();
-    distinct.dedup();
-    any_area && distinct.len() == corners.len()
 }
 
-type Place = [BigRational; 2];
-
-fn places([u, v, w]: &Vector) -> Place {
-    [u, v].map(|x| BigRational::new(x.clone(), w.clone()))
-}
-
-/// A line by its slope and its height at 0, or an upright one by its place.
-type Line = (Option<BigRational>, BigRational);
-
-/// How many more segments start than end, by line and point.
+/// A sum of directed segments.
 #[derive(Default)]
-struct Ends {
-    counts: BTreeMap<(Line, Place), i32>,
+struct Chain {
+    /// How often each is run forward, less how often backward, by its ends in ascending order.
+    segments: BTreeMap<[usize; 2], i32>,
 }
 
-impl Ends {
-    fn add(&mut self, corners: impl Iterator<Item = Place>) {
-        let corners: Vec<Place> = corners.collect();
-        for (k, from) in corners.iter().enumerate() {
-            let to = &corners[(k + 1) % corners.len()];
-            let line = line(from, to);
-            *self.counts.entry((line.clone(), from.clone())).or_default() += 1;
-            *self.counts.entry((line, to.clone())).or_default() -= 1;
+impl Chain {
+    fn add(&mut self, around: &[usize]) {
+        for (k, &from) in around.iter().enumerate() {
+            let to = around[(k + 1) % around.len()];
+            *self.segments.entry([from.min(to), from.max(to)]).or_default() += if from < to { 1 } else { -1 };
         }
     }
 
-    fn cancel(&self) -> bool {
-        self.counts.values().all(|&count| count == 0)
+    /// True if the sum is zero on every line: as many segments start as end, at each of its points.
+    fn cancels(&self, corners: &Corners) -> bool {
+        let mut lines: Vec<Vector> = Vec::new();
+        let mut ends: BTreeMap<[usize; 2], i32> = BTreeMap::new();
+        for (&segment, &count) in self.segments.iter().filter(|&(_, &count)| count != 0) {
+            let on = |line: &Vector| segment.iter().all(|&corner| dot(line, &corners.places[corner]).is_zero());
+            let line = lines.iter().position(on).unwrap_or(lines.len());
+            if line == lines.len() {
+                lines.push(corners.line(segment));
+            }
+            for (corner, change) in segment.into_iter().zip([count, -count]) {
+                *ends.entry([line, corner]).or_default() += change;
+            }
+        }
+        ends.values().all(|&count| count == 0)
     }
-}
-
-fn line([x, y]: &Place, [other_x, other_y]: &Place) -> Line {
-    let run = other_x - x;
-    if run.is_zero() {
-        return (None, x.clone());
-    }
-    let slope = (other_y - y) / run;
-    let height = y - &slope * x;
-    (Some(slope), height)
 }
