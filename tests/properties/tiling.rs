@@ -1,12 +1,13 @@
 //! One image: its cells tile, and show what is nearest.
 
 use super::{cases, hold, mode};
+use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::contour::{Domain, Viewpoint};
 use nusselt::scene::{PolygonId, Side};
 use nusselt::testing::{
-    Case, Mode, RayOracle, case, check_closed, check_image, check_labels, check_sums, check_tiling, closed_scene,
-    direction, gallery, point_inside,
+    Case, Defect, Mode, RayOracle, case, check_closed, check_image, check_labels, check_same_bits, check_same_view,
+    check_sums, check_tiling, closed_scene, direction, gallery, point_inside,
 };
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -85,4 +86,25 @@ fn the_gallery_holds() {
             panic!("{name}: {defect}\n{case:?}");
         }
     }
+}
+
+/// The checks themselves can fail.
+#[test]
+fn the_checks_tell_what_is_wrong() {
+    let [open, closed] = [gallery::three_edges_through_one_direction(), gallery::box_on_floor()];
+    let image = |case: &Case| case.image().expect("the gallery has images");
+    assert!(matches!(check_closed(&image(&open)), Err(Defect::Background { .. })));
+    assert_eq!(check_closed(&image(&closed)), Ok(()));
+    // Another eye: other corners. The same, and of another scene: other labels.
+    let moved = Case { eye: closed.eye + 0.25, ..closed.clone() };
+    assert!(matches!(check_same_bits(&image(&closed), &image(&moved)), Err(Defect::Bits { .. })));
+    let same = |polygon, side| (polygon, side);
+    let directions = [DVec3::new(0.1, 0.2, 1.0), DVec3::new(0.3, 0.4, -1.0)];
+    let differ = |a, b, directions| check_same_view([&image(a), &image(b)], [&same, &same], |d| d, directions);
+    assert!(matches!(differ(&closed, &open, &directions), Err(Defect::Disagreement { .. })));
+    assert!(matches!(differ(&closed, &moved, &[]), Err(Defect::Angles { .. })));
+    assert_eq!(differ(&closed, &closed, &directions), Ok(2));
+    // An oracle for another scene.
+    let other = RayOracle::new(&moved.faces.mapped(|p| p * 3.0).reversed().scene().expect("a scene"));
+    assert!(matches!(check_labels(&image(&closed), &other), Err(Defect::Label { .. })));
 }
