@@ -21,19 +21,20 @@ impl Case {
     /// | bytes | meaning |
     /// | --- | --- |
     /// | 1 | version |
-    /// | 1 | bit 0: chaos mode; bits 1 to 3: epsilon, 0 for 0 to 5, then 2^-10, 2^-3; the rest: the outlook, see below |
+    /// | 1 | bit 0: chaos mode; bits 1 to 3: epsilon, 0 for 0 to 5, then 2^-10, 2^-3; bits 4 to 6: the outlook |
     /// | 3 coordinates | the eye, if it is free |
-    /// | 3 | where the eye is: a kind (remainder by 6: 0 to 2 free, 3 on a vertex, 4 in the middle of an edge, 5 in a plane), the face, its corner |
+    /// | 3 | where the eye is: a kind, a face, its corner |
     /// | 3 coordinates | the direction |
     /// | rest | faces, each an operation and its arguments |
     ///
-    /// Outlook, the second byte / 16 (remainder by 8): 0 to 3 sphere, 4, 5 hemisphere, 6 above the front of the face
-    /// named in the third part, 7 above its back.
+    /// Kinds of eyes (remainder by 6): 0 to 2 free, 3 on a vertex, 4 in the middle of an edge, 5 in a plane.
+    ///
+    /// Outlook: 0 to 3 sphere, 4, 5 hemisphere, 6 above the front of the face named with the eye, 7 above its back.
     ///
     /// Operations (remainder by 10): 0, 1 a triangle of three points; 2 a triangle that shares two
-    /// corners of an earlier face; 3 a parallelogram of three points (two triangles in chaos mode); 4 a box; 5 a box
-    /// seen from inside; 6 an earlier face again; 7 an earlier face turned over; 8 an earlier triangle with one coordinate moved one
-    /// step; 9 a triangle on the middle of an earlier edge.
+    /// corners of an earlier face; 3 a parallelogram of three points (two triangles in chaos mode); 4 a box;
+    /// 5 a box seen from inside; 6 an earlier face again; 7 an earlier face turned over; 8 an earlier triangle with
+    /// one coordinate moved one step; 9 a triangle on the middle of an earlier edge. After 12 faces no operation is read.
     pub fn decode(bytes: &[u8]) -> Option<Self> {
         let mut bytes = Bytes(bytes);
         if bytes.byte() != Self::VERSION {

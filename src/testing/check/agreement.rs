@@ -15,8 +15,8 @@ type Seen = Option<(PolygonId, Side)>;
 /// `names` gives what each image's polygons and sides are to be called; where both give the same, the same is
 /// meant (several polygons may become one). `turn` maps a direction of the first image to the second's, exactly.
 /// Compared are what is shown in each of the `directions` (of the first image) that lies strictly inside of a
-/// cell in both, exactly, and the solid angle of everything, up to the sum of both images' [`angle_tolerance`] for the cells that
-/// show it. Gives the number of directions that had an answer.
+/// cell in both, exactly, and the solid angle of everything, up to the sum of both images'
+/// [`angle_tolerance`] for the cells that show it. Gives the number of directions that had an answer.
 ///
 /// # Errors
 /// The first difference.

@@ -1,11 +1,11 @@
 //! The fragments of a piece tile it: proved, whatever epsilon was.
 //!
-//! Each fragment is shown to be a convex polygon in the piece's plane, counter-clockwise like the piece. So the sum
-//! of the fragments' winding numbers around a point is the number of fragments over that point; it is
-//! the piece's, 1 inside and 0 outside, if the boundaries are the same as chains: if on every line the fragments'
-//! boundaries less the piece's cover every stretch as often forward as backward. Along a line that difference changes by 1 where a
-//! segment starts and by -1 where one ends, whichever way it runs; so it is 0 everywhere if at every
-//! point of the line as many segments start as end.
+//! Each fragment is shown to be a convex polygon in the piece's plane, counter-clockwise like the piece. So the
+//! sum of the fragments' winding numbers around a point is the number of fragments over that point; it is
+//! the piece's, 1 inside and 0 outside, if the boundaries are the same as chains: if on every line the
+//! fragments' boundaries less the piece's cover every stretch as often forward as backward. Along a line that
+//! difference changes by 1 where a segment starts and by -1 where one ends, whichever way it runs; so it is
+//! 0 everywhere if at every point of the line as many segments start as end.
 
 use super::{Defect, FragmentFault};
 use crate::bsp::{FragmentRef, SceneBsp};

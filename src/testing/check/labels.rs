@@ -16,8 +16,9 @@ pub fn inner_directions(cell: Cell<'_>) -> impl Iterator<Item = DVec3> {
 }
 
 /// Checks that every cell shows the polygon, piece and side that a ray meets, in up to three directions
-/// inside of it; gives the number of directions in which both had an answer. Only pieces among
-/// [`SceneBsp::uncut_slivers`](crate::bsp::SceneBsp::uncut_slivers) are excused, and only for each other's order: none if epsilon is 0.
+/// inside of it; gives the number of directions in which both had an answer. Where something is shown and
+/// something is met, it is excused if either is a piece among
+/// [`SceneBsp::uncut_slivers`](crate::bsp::SceneBsp::uncut_slivers): none if epsilon is 0.
 ///
 /// # Errors
 /// The first cell that shows something else.

@@ -43,7 +43,7 @@ pub enum Defect {
     },
     /// A direction strictly inside of more than one cell, or of the domain but of no cell, or of a cell
     /// outside of the domain.
-    #[error("direction {direction} lies strictly inside of {} cells: {cells:?}, and on the boundary of {touched}", cells.len())]
+    #[error("direction {direction} lies strictly inside of the cells {cells:?}, and on the boundary of {touched}")]
     NotTiled {
         /// The direction.
         direction: DVec3,
