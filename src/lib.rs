@@ -26,12 +26,13 @@
 //! | --- | --- |
 //! | [`exact`] | signs of real numbers, never rounded |
 //! | [`scene`] | polygons, objects, materials; building and checking them |
+//! | [`verify`] | proofs of contour images, an exact ray oracle, outside opinions; shares nothing with what follows |
 //! | [`bsp`] | the 3D BSP: front-to-back order from any point |
 //! | [`contour`] | the 2D BSP on the sphere of directions, contour images and their cells |
 //! | [`integral`] | solid angles and form factors of cells |
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
 //! | [`io`] | reading scenes, writing results |
-//! | [`verify`] | an exact ray oracle that shares nothing with the engine, outside opinions |
+//! | `testing` | with the feature of that name: strategies, degenerate scenes and checks for property tests |
 //!
 //! Source: P. Jacob, *Evaluation of a BRDF using BSP Trees*, Interner Bericht 272/95, University of
 //! Kaiserslautern, 1995.
@@ -43,6 +44,8 @@ pub mod integral;
 pub mod io;
 pub mod samples;
 pub mod scene;
+#[cfg(feature = "testing")]
+pub mod testing;
 pub mod verify;
 
 #[cfg(doctest)]

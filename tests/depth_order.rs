@@ -4,7 +4,7 @@ mod common;
 
 use common::{Faces, Random, cluttered_room};
 use glam::{DQuat, DVec3};
-use nusselt::bsp::{BspError, BspOptions, FragmentRef, SceneBsp};
+use nusselt::bsp::{BspError, BspOptions, SceneBsp};
 use nusselt::contour::{ContourImage, Domain, Location, ViewError, ViewOptions, Viewpoint};
 use nusselt::scene::{PolygonId, Scene, Side};
 use nusselt::verify::{RayAnswer, RayOracle};
@@ -160,20 +160,6 @@ fn with_epsilon_the_cells_still_tile() {
     assert!(bsp.stats().uncut_slivers > 0);
     assert!(SceneBsp::build(&scene, &BspOptions { epsilon: f64::NAN, ..BspOptions::default() }).is_err());
     assert!(SceneBsp::build(&scene, &BspOptions { epsilon: -1.0, ..BspOptions::default() }).is_err());
-}
-
-#[test]
-fn the_two_traversals_mirror_each_other() {
-    let bsp = SceneBsp::build(&cluttered_room(50, 6).build(), &BspOptions::default()).unwrap();
-    let mut random = Random(2);
-    for _ in 0..20 {
-        let eye = random.in_cube(12.0);
-        let front: Vec<_> = bsp.front_to_back(eye).map(FragmentRef::id).collect();
-        let mut back: Vec<_> = bsp.back_to_front(eye).map(FragmentRef::id).collect();
-        back.reverse();
-        assert_eq!(front, back);
-        assert!(front.len() <= bsp.fragment_count());
-    }
 }
 
 /// `n` long triangles that all pass through each other.

@@ -2,8 +2,8 @@
 
 use super::skeleton::{LineId, PointId, Skeleton};
 use super::{FragmentId, Tree};
-use crate::exact::ApproxPoint;
-use crate::scene::{PieceId, PolygonId};
+use crate::exact::{ApproxPoint, Point};
+use crate::scene::{PieceId, PolygonId, Scene};
 use glam::DVec3;
 
 /// One point of a fragment's boundary and the line from it to the next one.
@@ -84,6 +84,11 @@ impl<'a> FragmentRef<'a> {
         self.id
     }
 
+    /// The scene it is part of.
+    pub fn scene(self) -> &'a Scene {
+        &self.tree.scene
+    }
+
     /// The polygon it is part of.
     pub fn polygon(self) -> PolygonId {
         self.fragment().polygon
@@ -101,13 +106,19 @@ impl<'a> FragmentRef<'a> {
         tree.sides[self.fragment().range()].iter().map(move |side| tree.skeleton.approx_point(side.point).position)
     }
 
+    /// The same corners by exact definition.
+    pub fn exact_corners(self) -> impl ExactSizeIterator<Item = Point> + 'a {
+        let skeleton = &self.tree.skeleton;
+        self.tree.sides[self.fragment().range()].iter().map(|side| skeleton.resolved_point(skeleton.point(side.point)))
+    }
+
     fn fragment(self) -> Fragment {
         self.tree.fragments[self.id.index()]
     }
 }
 
 /// The whole piece as a fragment's boundary.
-pub(super) fn whole_piece(scene: &crate::scene::Scene, piece: PieceId) -> Vec<FragmentSide> {
+pub(super) fn whole_piece(scene: &Scene, piece: PieceId) -> Vec<FragmentSide> {
     let piece = scene.piece(piece);
     let edges = scene.edges();
     let sides = piece.vertices().iter().zip(piece.edges());

@@ -178,7 +178,13 @@ fn nearest_point(corners: &[DVec3], normal: DVec3, near: DVec3) -> DVec3 {
     }
     let on_segments = segments().map(|(&a, &b)| {
         let ab = b - a;
-        a + ab * ((foot - a).dot(ab) / ab.length_squared()).clamp(0.0, 1.0)
+        // Seen from afar a segment may be so short that its square underflows.
+        let most = ab.abs().max_element();
+        if most == 0.0 {
+            return a;
+        }
+        let unit = ab / most;
+        a + ab * ((foot - a).dot(unit) / unit.length_squared() / most).clamp(0.0, 1.0)
     });
     on_segments.min_by(|p, q| p.distance_squared(foot).total_cmp(&q.distance_squared(foot))).unwrap_or(foot)
 }

@@ -97,6 +97,10 @@ impl Signs for KernelSigns {
         SeenBox::new(plane.anchor, low, high).side(&plane.normal) == Some(side)
     }
 
+    fn definition(&self, splitter: u32) -> &Splitter {
+        &self.splitters[splitter as usize]
+    }
+
     fn rounded(&self, splitter: u32) -> DVec3 {
         self.kernel.approx_normal(self.ids[splitter as usize]).v
     }

@@ -4,6 +4,7 @@ use super::boxes::PieceBoxes;
 use super::checker::Checker;
 use super::defect::Defect;
 use super::evidence::{EvidenceSliver, HalfSphere};
+use super::rational::Strip;
 use super::signs::Signs;
 use crate::exact::{Plane, Sign, Splitter};
 use crate::scene::{PieceId, PieceRef, Side};
@@ -226,19 +227,17 @@ impl<S: Signs> Checker<'_, S> {
         rest.is_none_or(|half| !self.clip(part, half))
     }
 
-    /// True if a polygon's corners, put on a plane, are no further than epsilon from another plane.
+    /// True if a polygon's corners, put on a plane, are no further than epsilon from another plane, exactly.
     ///
-    /// In floating point, as the splitter measures it, on corners that are rounded: so up to 1e-9 of the
-    /// scene's size, or of epsilon, is allowed on top.
+    /// The splitter measures in floating point, on corners that are rounded: so up to 1e-9 of the scene's size, or of
+    /// epsilon, is allowed on top.
     fn is_within_epsilon(&self, part: &[HalfSphere], own: &Plane, plane: &Plane) -> bool {
-        let limit = self.evidence.epsilon * (1.0 + 1e-9) + 1e-9 * self.scene.diagonal();
-        let ([n, a], [m, b]) = (rounded_plane(own), rounded_plane(plane));
-        let eye = self.evidence.eye;
-        (0..part.len()).all(|k| {
-            let d = self.rounded([part[k.checked_sub(1).unwrap_or(part.len() - 1)], part[k]]);
-            let point = eye + d * (n.dot(a - eye) / n.dot(d));
-            self.evidence.epsilon > 0.0 && m.dot(point - b).abs() <= limit
-        })
+        let epsilon = self.evidence.epsilon;
+        let limit = epsilon * (1.0 + 1e-9) + 1e-9 * self.scene.diagonal();
+        let strip = Strip::new(self.evidence.eye, own, plane, limit);
+        let splitter = |k: usize| self.signs.definition(part[k].splitter);
+        let mut corners = (0..part.len()).map(|k| [splitter(k.checked_sub(1).unwrap_or(part.len() - 1)), splitter(k)]);
+        epsilon > 0.0 && corners.all(|crossing| strip.holds(crossing))
     }
 
     /// A direction inside of a polygon, rounded.
@@ -253,12 +252,4 @@ impl<S: Signs> Checker<'_, S> {
 struct Places {
     nearer: bool,
     beyond: bool,
-}
-
-/// A unit normal and a point of a plane.
-fn rounded_plane(plane: &Plane) -> [DVec3; 2] {
-    match *plane {
-        Plane::Axis { axis, value } => [DVec3::AXES[axis], DVec3::AXES[axis] * value],
-        Plane::Points([a, b, c]) => [(b - a).cross(c - a).normalize_or_zero(), a],
-    }
 }

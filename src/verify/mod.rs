@@ -14,6 +14,7 @@ mod integers;
 mod kernel_signs;
 mod labels;
 pub mod outside;
+mod rational;
 mod rational_signs;
 mod ray;
 mod signs;

@@ -5,6 +5,7 @@
 //! and nothing is rounded.
 
 use super::evidence::HalfSphere;
+use super::rational::{RationalPlane, Vector, cross, dot, exact, normal, rational, sign_of, whole};
 use super::signs::Signs;
 use crate::exact::{Plane, Sign, Splitter};
 use crate::scene::Scene;
@@ -15,14 +16,13 @@ use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 use std::collections::HashMap;
 
-type Vector<T> = [T; 3];
-
 /// Exact vectors of all that was taken in.
 pub(super) struct RationalSigns {
     eye: Vector<BigRational>,
     /// A number that makes every coordinate whole, and the eye times that.
     scale: BigInt,
     scaled_eye: Vector<BigInt>,
+    splitters: Vec<Splitter>,
     /// Whole multiples of the normals.
     normals: Vec<Vector<BigInt>>,
     /// Whole multiples of the planes.
@@ -30,55 +30,19 @@ pub(super) struct RationalSigns {
     decisions: u64,
 }
 
-/// `N . p >= c` in front.
-struct RationalPlane {
-    normal: Vector<BigRational>,
-    offset: BigRational,
-}
-
-impl RationalPlane {
-    fn new(plane: &Plane) -> Self {
-        match plane {
-            Plane::Axis { axis, value } => {
-                let mut normal = [(); 3].map(|()| BigRational::zero());
-                normal[*axis] = BigRational::from_integer(1.into());
-                Self { normal, offset: rational(*value) }
-            }
-            Plane::Points(points) => {
-                let [a, b, c] = points.map(exact);
-                let normal = cross(&minus(&b, &a), &minus(&c, &a));
-                let offset = dot(&normal, &a);
-                Self { normal, offset }
-            }
-        }
-    }
-
-    fn height(&self, point: &Vector<BigRational>) -> BigRational {
-        dot(&self.normal, point) - &self.offset
-    }
-}
-
 impl RationalSigns {
     pub(super) fn new(scene: &Scene, eye: DVec3) -> Self {
         let coordinates = scene.vertices().iter().copied().chain([eye]).flat_map(|p| p.to_array());
         let scale = coordinates.fold(BigInt::from(1), |scale, x| scale.lcm(rational(x).denom()));
         let scaled_eye = exact(eye).map(|x| (x * BigRational::from_integer(scale.clone())).to_integer());
-        Self { eye: exact(eye), scale, scaled_eye, normals: Vec::new(), planes: Vec::new(), decisions: 0 }
-    }
-
-    fn normal(&self, splitter: &Splitter) -> Vector<BigRational> {
-        match splitter {
-            Splitter::Edge(ends) => {
-                let [a, b] = ends.map(|p| minus(&exact(p), &self.eye));
-                cross(&a, &b)
-            }
-            Splitter::Crease(planes) => {
-                let [p, q] = planes.map(|plane| RationalPlane::new(&plane));
-                let (h, g) = (p.height(&self.eye), q.height(&self.eye));
-                [0, 1, 2].map(|k| &g * &p.normal[k] - &h * &q.normal[k])
-            }
-            Splitter::Given(normal) => exact(*normal),
-            Splitter::Parallel(plane) => RationalPlane::new(plane).normal,
+        Self {
+            eye: exact(eye),
+            scale,
+            scaled_eye,
+            splitters: Vec::new(),
+            normals: Vec::new(),
+            planes: Vec::new(),
+            decisions: 0,
         }
     }
 
@@ -101,7 +65,8 @@ impl RationalSigns {
 
 impl Signs for RationalSigns {
     fn add(&mut self, splitter: &Splitter) -> u32 {
-        self.normals.push(whole(&self.normal(splitter)));
+        self.splitters.push(*splitter);
+        self.normals.push(whole(&normal(&self.eye, splitter)));
         self.normals.len() as u32 - 1
     }
 
@@ -173,6 +138,10 @@ impl Signs for RationalSigns {
         self.height_at(plane, DVec3::from(corner)) == side
     }
 
+    fn definition(&self, splitter: u32) -> &Splitter {
+        &self.splitters[splitter as usize]
+    }
+
     fn rounded(&self, splitter: u32) -> DVec3 {
         let normal = &self.normals[splitter as usize];
         // Divided by what the largest component is close to, each fits an f64.
@@ -183,44 +152,4 @@ impl Signs for RationalSigns {
     fn decisions(&self) -> u64 {
         self.decisions
     }
-}
-
-fn rational(x: f64) -> BigRational {
-    BigRational::from_float(x).unwrap_or_else(BigRational::zero)
-}
-
-fn exact(v: DVec3) -> Vector<BigRational> {
-    v.to_array().map(rational)
-}
-
-/// The multiple of a vector, by a positive factor, that is whole and has no common divisor.
-fn whole<const N: usize>(v: &[BigRational; N]) -> [BigInt; N] {
-    let denominator = v.iter().fold(BigInt::from(1), |all, x| all.lcm(x.denom()));
-    let whole = v.each_ref().map(|x| x.numer() * (&denominator / x.denom()));
-    let divisor = whole.iter().fold(BigInt::zero(), |all, x| all.gcd(x));
-    if divisor.is_zero() { whole } else { whole.map(|x| x / &divisor) }
-}
-
-fn minus(a: &Vector<BigRational>, b: &Vector<BigRational>) -> Vector<BigRational> {
-    [0, 1, 2].map(|k| &a[k] - &b[k])
-}
-
-fn cross<T>(a: &Vector<T>, b: &Vector<T>) -> Vector<T>
-where
-    T: std::ops::Sub<Output = T>,
-    for<'a> &'a T: std::ops::Mul<Output = T>,
-{
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| &a[i] * &b[j] - &a[j] * &b[i])
-}
-
-fn dot<T>(a: &Vector<T>, b: &Vector<T>) -> T
-where
-    T: std::ops::Add<Output = T>,
-    for<'a> &'a T: std::ops::Mul<Output = T>,
-{
-    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
-}
-
-fn sign_of<T: Zero + PartialOrd>(x: &T) -> Sign {
-    x.partial_cmp(&T::zero()).map_or(Sign::Zero, Sign::from)
 }

@@ -34,6 +34,9 @@ pub(super) trait Signs {
     /// True if a box certainly lies on that side of a plane, and does not touch it.
     fn box_beyond(&mut self, plane: u32, side: Sign, corners: [DVec3; 2]) -> bool;
 
+    /// A splitter that was taken in.
+    fn definition(&self, splitter: u32) -> &Splitter;
+
     /// A normal in floating point, for messages and for what need not be exact.
     fn rounded(&self, splitter: u32) -> DVec3;
 

@@ -1,0 +1,40 @@
+//! Certificates: every image is proved, and what is not claimed rightly is refused.
+
+use super::{cases, hold, mode};
+use nusselt::testing::{case, check_verdict, gallery, mutated};
+use nusselt::verify::Arithmetic;
+use proptest::prelude::*;
+
+proptest! {
+    #![proptest_config(cases(300))]
+
+    #[test]
+    fn every_image_is_proved_whatever_epsilon_is(case in mode().prop_flat_map(case), coarse in any::<bool>()) {
+        let epsilon = if coarse { hold(case.scene())?.diagonal() * 1e-2 } else { 0.0 };
+        let epsilon = if epsilon.is_finite() { epsilon } else { 0.0 };
+        let case = nusselt::testing::Case { epsilon, ..case };
+        hold(hold(case.image())?.certify())?;
+    }
+
+    #[test]
+    fn changed_evidence_is_accepted_only_if_it_claims_the_same(
+        case in mode().prop_flat_map(case),
+        bytes in any::<[u8; 8]>(),
+    ) {
+        let image = hold(case.image())?;
+        let scene = image.bsp().scene();
+        if scene.piece_count() > 0 {
+            hold(check_verdict(&image, &mutated(&image.evidence(), scene, bytes)))?;
+        }
+    }
+}
+
+#[test]
+fn the_gallery_is_proved_by_rational_numbers() {
+    for (name, case) in gallery::all() {
+        let image = case.image().unwrap_or_else(|error| panic!("{name}: {error}"));
+        if let Err(defect) = image.evidence().check(image.bsp().scene(), Arithmetic::Rational) {
+            panic!("{name}: {defect}\n{case:?}");
+        }
+    }
+}
