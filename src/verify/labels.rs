@@ -204,7 +204,7 @@ impl<S: Signs> Checker<'_, S> {
     /// A sliver puts its piece in wrong order only with what comes within epsilon of the plane too: what lies between the
     /// sliver and the plane, seen from the eye. Unless the eye itself is that near: then it may look along the plane.
     fn cut_sliver(&mut self, sliver: &EvidenceSliver, other: PieceId, part: &mut Vec<HalfSphere>) -> bool {
-        let [own, other] = [sliver.piece, other].map(|id| self.scene.resolve_plane(self.scene.piece(id).plane()));
+        let own = self.scene.resolve_plane(self.scene.piece(sliver.piece).plane());
         let plane = self.scene.resolve_plane(sliver.plane);
         let splitter = self.signs.add(&Splitter::Crease([own, plane]));
         let height = self.height(sliver.piece);
@@ -217,8 +217,8 @@ impl<S: Signs> Checker<'_, S> {
             Some(Side::Front) => (self.clip(&mut excused, front), Some(back)),
             Some(Side::Back) => (self.clip(&mut excused, back), Some(front)),
         };
-        let own_heights = self.rounded_heights(&excused, &own, &plane);
-        let other_heights = self.rounded_heights(&excused, &other, &plane);
+        let own_heights = self.rounded_heights(&excused, sliver.piece, &plane);
+        let other_heights = self.rounded_heights(&excused, other, &plane);
         let [m, b] = rounded_plane(&plane);
         let eye_height = m.dot(self.evidence.eye - b);
         let limit = self.sliver_limit();
@@ -239,18 +239,24 @@ impl<S: Signs> Checker<'_, S> {
         if epsilon > 0.0 { epsilon * (1.0 + 1e-9) + 1e-9 * self.scene.diagonal() } else { -1.0 }
     }
 
-    /// The least and the greatest height over a plane of a polygon's corners, put on a plane of their own.
-    fn rounded_heights(&self, part: &[HalfSphere], own: &Plane, plane: &Plane) -> [f64; 2] {
-        let ([n, a], [m, b]) = (rounded_plane(own), rounded_plane(plane));
+    /// The least and the greatest height over a plane of what is seen of a piece in a part of its cone.
+    fn rounded_heights(&self, part: &[HalfSphere], piece: PieceId, plane: &Plane) -> [f64; 2] {
+        let piece = self.scene.piece(piece);
+        let [n, a] = rounded_plane(&self.scene.resolve_plane(piece.plane()));
+        let [m, b] = rounded_plane(plane);
+        let range = |heights: &mut dyn Iterator<Item = f64>| {
+            heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| [low.min(height), high.max(height)])
+        };
+        // Seen nearly edge-on the corners are all error; but none lies beyond those of the piece.
+        let [least, most] = range(&mut piece.points().map(|p| m.dot(p - b)));
         let eye = self.evidence.eye;
-        let heights = (0..part.len()).map(|k| {
+        let mut heights = (0..part.len()).flat_map(|k| {
             let d = self.rounded([part[k.checked_sub(1).unwrap_or(part.len() - 1)], part[k]]);
-            m.dot(eye + d * (n.dot(a - eye) / n.dot(d)) - b)
+            let height = m.dot(eye + d * (n.dot(a - eye) / n.dot(d)) - b);
+            // What is no number may be anywhere.
+            if height.is_nan() { [least, most] } else { [height.max(least).min(most); 2] }
         });
-        // What is no number is as far away as can be.
-        heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], height| {
-            if height.is_nan() { [f64::NEG_INFINITY, f64::INFINITY] } else { [low.min(height), high.max(height)] }
-        })
+        range(&mut heights)
     }
 
     /// A direction inside of a polygon, rounded.
