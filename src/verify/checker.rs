@@ -1,6 +1,7 @@
 //! What the rules share: the evidence in one arithmetic, with great circles known by identity.
 
 use super::certificate::Certificate;
+use super::clip::clip;
 use super::defect::{Defect, rounded_crossing};
 use super::evidence::{Evidence, EvidenceDomain, EvidenceSliver, HalfSphere};
 use super::signs::Signs;
@@ -202,39 +203,8 @@ impl<'a, S: Signs> Checker<'a, S> {
     }
 
     /// Cuts what is outside of a half sphere off a convex polygon; false if nothing with an interior is left.
-    ///
-    /// A polygon is a cyclic list of half spheres, as a cell is; side `k` runs from corner `k`, where it
-    /// meets side `k - 1`, to corner `k + 1`.
     pub(super) fn clip(&mut self, polygon: &mut Vec<HalfSphere>, half: HalfSphere) -> bool {
-        let len = polygon.len();
-        let corner = |k: usize| [polygon[if k == 0 { len - 1 } else { k - 1 }], polygon[k]];
-        let signs: Vec<Sign> = (0..len)
-            .map(|k| {
-                let [before, after] = corner(k);
-                self.orientation([before, after, half])
-            })
-            .collect();
-        if !signs.contains(&Sign::Negative) {
-            return true;
-        }
-        // The polygon has an interior, so what touches the inside only from outside has none.
-        let next = |k: usize| if k + 1 == len { 0 } else { k + 1 };
-        let leaves = |k: &usize| signs[*k].is_positive() && !signs[next(*k)].is_positive();
-        let Some(last) = (0..len).find(leaves) else { return false };
-        // What is kept is one run of sides, from where the polygon comes back inside to `last`.
-        let mut kept = vec![half];
-        let mut k = next(last);
-        loop {
-            if signs[k].is_positive() || signs[next(k)].is_positive() {
-                kept.push(polygon[k]);
-            }
-            if k == last {
-                break;
-            }
-            k = next(k);
-        }
-        *polygon = kept;
-        true
+        clip(polygon, &half, |sides| self.orientation(sides.map(|side| *side)))
     }
 
     pub(super) fn certificate(&self, great_circles: usize) -> Certificate {

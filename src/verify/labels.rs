@@ -3,10 +3,10 @@
 use super::boxes::PieceBoxes;
 use super::checker::Checker;
 use super::defect::Defect;
-use super::evidence::{EvidenceSliver, HalfSphere};
-use super::rational::Strip;
+use super::evidence::HalfSphere;
 use super::signs::Signs;
-use crate::exact::{Plane, Sign, Splitter};
+use super::slivers::Disorder;
+use crate::exact::{Sign, Splitter};
 use crate::scene::{PieceId, PieceRef, Side};
 use glam::DVec3;
 
@@ -162,7 +162,7 @@ impl<S: Signs> Checker<'_, S> {
         };
         self.meets_cone(sides, other, work)
             && crease.is_none_or(|half| self.clip(&mut work.part, half))
-            && !self.is_excused([piece, other], work)
+            && !self.is_excused([piece, other], &work.part)
     }
 
     /// Where the corners of one piece are against the plane of another, seen from the eye.
@@ -194,50 +194,29 @@ impl<S: Signs> Checker<'_, S> {
         HalfSphere { splitter: self.signs.add(&Splitter::Crease(planes)), inside }
     }
 
-    /// True if two pieces may be in wrong order in all of `work.part`, by the slivers recorded of them; else leaves
-    /// there what is not excused.
-    ///
-    /// At a node of the 3D BSP that parts two pieces, the order is wrong only where the one that was left uncut lies
-    /// beyond the node's plane, by less than epsilon, and the other one between that plane and it.
-    fn is_excused(&mut self, pieces: [PieceId; 2], work: &mut Work) -> bool {
+    /// True if the slivers recorded of two pieces excuse that they are in wrong order in all of `part`.
+    fn is_excused(&mut self, pieces: [PieceId; 2], part: &[HalfSphere]) -> bool {
+        let epsilon = self.evidence.epsilon;
         let slivers = pieces.map(|piece| self.slivers_of(piece));
-        slivers.into_iter().flatten().any(|sliver| self.cut_sliver(sliver, pieces, &mut work.part))
-    }
-
-    /// Cuts off what is seen of a piece through a recorded sliver; true if nothing is left.
-    fn cut_sliver(&mut self, sliver: &EvidenceSliver, pieces: [PieceId; 2], part: &mut Vec<HalfSphere>) -> bool {
-        let plane_of = |piece: PieceId| self.scene.resolve_plane(self.scene.piece(piece).plane());
-        let (planes, own) = (pieces.map(plane_of), plane_of(sliver.piece));
-        let plane = self.scene.resolve_plane(sliver.plane);
-        let splitter = self.signs.add(&Splitter::Crease([own, plane]));
-        let height = self.height(sliver.piece);
-        // On the piece, the part in front of the plane is where the crease has the sign opposite to the height.
-        let front = HalfSphere { splitter, inside: -height };
-        let back = HalfSphere { splitter, inside: height };
-        let mut excused = part.clone();
-        let (is_there, rest) = match sliver.beyond {
-            None => (true, None),
-            Some(Side::Front) => (self.clip(&mut excused, front), Some(back)),
-            Some(Side::Back) => (self.clip(&mut excused, back), Some(front)),
-        };
-        let within = |own| self.is_within_epsilon(&excused, own, &plane);
-        if !is_there || !planes.iter().all(within) {
+        if epsilon <= 0.0 || slivers.iter().all(Vec::is_empty) {
             return false;
         }
-        rest.is_none_or(|half| !self.clip(part, half))
-    }
-
-    /// True if a polygon's corners, put on a plane, are no further than epsilon from another plane, exactly.
-    ///
-    /// The splitter measures in floating point, on corners that are rounded: so up to 1e-9 of the scene's size, or of
-    /// epsilon, is allowed on top.
-    fn is_within_epsilon(&self, part: &[HalfSphere], own: &Plane, plane: &Plane) -> bool {
-        let epsilon = self.evidence.epsilon;
+        // The splitter measures in floating point, on corners that are rounded: so up to 1e-9 of the scene's size, or of
+        // epsilon, is allowed on top.
         let limit = epsilon * (1.0 + 1e-9) + 1e-9 * self.scene.diagonal();
-        let strip = Strip::new(self.evidence.eye, own, plane, limit);
-        let splitter = |k: usize| self.signs.definition(part[k].splitter);
-        let mut corners = (0..part.len()).map(|k| [splitter(k.checked_sub(1).unwrap_or(part.len() - 1)), splitter(k)]);
-        epsilon > 0.0 && corners.all(|crossing| strip.holds(crossing))
+        let planes = pieces.map(|piece| self.scene.resolve_plane(self.scene.piece(piece).plane()));
+        let disorder = Disorder::new(self.evidence.eye, planes.each_ref(), limit);
+        let inwards = |side: &HalfSphere| disorder.inward_normal(self.signs.definition(side.splitter), side.inside);
+        let mut parts = vec![part.iter().map(inwards).collect()];
+        for (whose, slivers) in slivers.iter().enumerate() {
+            for sliver in slivers {
+                disorder.excuse(&mut parts, whose, sliver, &self.scene.resolve_plane(sliver.plane));
+                if parts.is_empty() {
+                    return true;
+                }
+            }
+        }
+        false
     }
 
     /// A direction inside of a polygon, rounded.

@@ -7,6 +7,7 @@
 mod boxes;
 mod certificate;
 mod checker;
+mod clip;
 mod defect;
 mod evidence;
 mod filter;
@@ -18,6 +19,7 @@ mod rational;
 mod rational_signs;
 mod ray;
 mod signs;
+mod slivers;
 mod tiling;
 
 #[cfg(test)]

@@ -54,37 +54,6 @@ pub(super) fn normal(eye: &Vector<BigRational>, splitter: &Splitter) -> Vector<B
     }
 }
 
-/// The part of one plane that is no further than a limit from another one, seen from an eye.
-pub(super) struct Strip {
-    eye: Vector<BigRational>,
-    own: RationalPlane,
-    other: RationalPlane,
-    /// The square of the limit times the length of the other plane's normal.
-    limit: BigRational,
-}
-
-impl Strip {
-    pub(super) fn new(eye: DVec3, own: &Plane, other: &Plane, limit: f64) -> Self {
-        let (own, other) = (RationalPlane::new(own), RationalPlane::new(other));
-        let limit = rational(limit);
-        let limit = &limit * &limit * dot(&other.normal, &other.normal);
-        Self { eye: exact(eye), own, other, limit }
-    }
-
-    /// True if the line of sight where two splitters cross meets the strip.
-    pub(super) fn holds(&self, crossing: [&Splitter; 2]) -> bool {
-        let [m, n] = crossing.map(|splitter| normal(&self.eye, splitter));
-        let d = cross(&m, &n);
-        let rate = dot(&self.own.normal, &d);
-        if rate.is_zero() {
-            return false;
-        }
-        let t = -self.own.height(&self.eye) / rate;
-        let height = self.other.height(&[0, 1, 2].map(|k| &self.eye[k] + &t * &d[k]));
-        &height * &height <= self.limit
-    }
-}
-
 pub(super) fn rational(x: f64) -> BigRational {
     BigRational::from_float(x).unwrap_or_else(BigRational::zero)
 }

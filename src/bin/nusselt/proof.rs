@@ -44,16 +44,19 @@ impl Proof {
     }
 }
 
-/// An image that was just made failed its proof: the program is wrong, not its input.
+/// An image that was just made failed its proof: the program is wrong, not its input; but with an epsilon,
+/// more may be out of order than is excused.
 ///
 /// One message: what is wrong where, then the eye and the polygons that take part as lines of Rust.
 pub(crate) fn failed_image(file: &Path, scene: &Scene, evidence: &Evidence, defect: &Defect) -> Failure {
     let lines = defect.to_rust(evidence, scene);
-    let what = format!(
-        "the contour image is wrong, which is a bug of this program: {defect}; nothing was written, please report \
-         this with the lines that follow\n{}",
-        lines.trim_end()
-    );
+    let [what, advice] = if evidence.epsilon > 0.0 {
+        ["the contour image failed its proof", "try a smaller --epsilon; if it must hold, report"]
+    } else {
+        ["the contour image is wrong, which is a bug of this program", "please report"]
+    };
+    let lines = lines.trim_end();
+    let what = format!("{what}: {defect}; nothing was written, {advice} this with the lines that follow\n{lines}");
     Failure::about(file, &what)
 }
 
@@ -104,6 +107,11 @@ mod tests {
         let kept = message(failed_certificate(Path::new("kept.json"), file, &defect));
         assert!(kept.starts_with("kept.json: ") && kept.contains("rooms/box.obj"), "{kept}");
         assert_eq!(kept.lines().count(), 1);
+
+        let mut with_epsilon = relabelled.clone();
+        with_epsilon.epsilon = 0.5;
+        let text = message(failed_image(file, &scene, &with_epsilon, &defect));
+        assert!(text.contains("try a smaller --epsilon") && !text.contains("bug"), "{text}");
 
         let mut lacking = evidence.clone();
         lacking.cells.remove(0);

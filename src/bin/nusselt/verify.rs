@@ -18,7 +18,8 @@ Example: keep the proof of what is seen, and check it later, on another machine 
   nusselt contour room.obj --eye 2,1.5,1.2 --sphere --certificate proof.json
   nusselt verify room.obj proof.json --rational
 
-What is proved is what the file claims: the eye, the directions and the epsilon that are printed.";
+What is proved is what the file claims: the eye, the directions and the epsilon that are printed. With an epsilon above 0 the
+order within the slivers that the file lists is excused, not proved.";
 
 /// Check a certificate that contour --certificate kept against the scene, read again
 #[derive(clap::Args)]
