@@ -4,12 +4,12 @@
 //! about it, all faults at once. They keep to memory in proportion to the size of the files.
 
 mod atomic;
-#[cfg(feature = "cli")]
+#[cfg(feature = "json")]
 pub mod certificate;
-#[cfg(feature = "cli")]
+#[cfg(feature = "json")]
 mod contour_json;
 mod error;
-#[cfg(feature = "cli")]
+#[cfg(feature = "json")]
 mod json;
 mod lines;
 pub mod mtl;
@@ -19,11 +19,11 @@ mod svg;
 mod visible_obj;
 
 pub use atomic::atomic_write;
-#[cfg(feature = "cli")]
+#[cfg(feature = "json")]
 pub use certificate::{
     CERTIFICATE_SCHEMA, CertificateError, KeptCertificate, SceneSize, read_certificate, write_certificate,
 };
-#[cfg(feature = "cli")]
+#[cfg(feature = "json")]
 pub use contour_json::{
     CONTOUR_SCHEMA, CertificateRow, ContourSummary, DomainRow, ObjectRow, PolygonRow, Share, write_contour_json,
 };
