@@ -151,18 +151,25 @@ impl<S: Signs> Checker<'_, S> {
     /// True if `other` is in front of the piece that a cell shows, somewhere in that cell and without an
     /// excuse; leaves in `work.part` where.
     fn is_in_front(&mut self, other: PieceId, piece: PieceId, sides: &[HalfSphere], work: &mut Work) -> bool {
-        let crease = match self.places(other, piece) {
+        let is_coplanar = match self.places(other, piece) {
             // Seen from the near side of a plane, what is nowhere nearer than the plane is not in front of it.
             Places { nearer: false, beyond: true } => return false,
             Places { nearer: false, beyond: false } if !self.wins(other, piece) => return false,
-            Places { nearer: false, beyond: false } => None,
+            Places { nearer: false, beyond: false } => true,
             // Nor is something in front if all of the piece is nearer than its plane.
             Places { nearer: true, .. } if !self.places(piece, other).beyond => return false,
-            Places { nearer: true, .. } => Some(self.nearer(other, piece)),
+            Places { nearer: true, .. } => false,
         };
-        self.meets_cone(sides, other, work)
-            && crease.is_none_or(|half| self.clip(&mut work.part, half))
-            && !self.is_excused([piece, other], &work.part)
+        if !self.meets_cone(sides, other, work) {
+            return false;
+        }
+        if !is_coplanar {
+            let nearer = self.nearer(other, piece);
+            if !self.clip(&mut work.part, nearer) {
+                return false;
+            }
+        }
+        !self.is_excused([piece, other], &work.part)
     }
 
     /// Where the corners of one piece are against the plane of another, seen from the eye.
