@@ -24,16 +24,47 @@ fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
 }
 
 /// The top-level modules named in `crate::` paths, with braces after `crate::` opened.
-fn used(text: &str) -> BTreeSet<String> {
+fn used(code: &str) -> BTreeSet<String> {
     let mut modules = BTreeSet::new();
-    for part in text.split("crate::").skip(1) {
-        let names = match part.strip_prefix('{') {
-            Some(list) => list.split('}').next().unwrap_or_default().split(','),
-            None => part.split([':', ';', ' ', '}', ',']).next().unwrap_or_default().split(','),
+    for part in code.split("crate::").skip(1) {
+        let names: String = match part.strip_prefix('{') {
+            // Up to the brace that closes it, without what is in braces within.
+            Some(list) => {
+                let depths = list.chars().scan(1, |open, c| {
+                    *open += i32::from(c == '{') - i32::from(c == '}');
+                    (*open > 0).then_some((*open, c))
+                });
+                depths.filter(|(open, _)| *open == 1).map(|(_, c)| c).collect()
+            }
+            None => part.chars().take_while(|c| c.is_alphanumeric() || "_*".contains(*c)).collect(),
         };
-        modules.extend(names.map(|name| name.trim().split(':').next().unwrap_or_default().to_owned()));
+        let names = names.split(',').map(|name| name.trim().split([':', ' ']).next().unwrap_or_default().to_owned());
+        modules.extend(names.filter(|name| !name.is_empty()));
     }
     modules
+}
+
+/// The code of a file without comments, with paths that climb to the root by `super` written as `crate::`. `depth` is how
+/// many modules the file is in, with its own.
+fn code(text: &str, depth: usize) -> String {
+    let lines: Vec<&str> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    lines.join("\n").replace(&"super::".repeat(depth), "crate::")
+}
+
+#[test]
+fn modules_are_found_however_they_are_named() {
+    let found = |text: &str, depth| used(&code(text, depth)).into_iter().collect::<Vec<_>>();
+    assert_eq!(found("use crate::bsp;\nuse crate::exact::{Sign, Kernel};", 2), ["bsp", "exact"]);
+    assert_eq!(
+        found("use crate::{exact::{Sign, Kernel}, bsp::{a, b::{c}},\n contour as c};", 2),
+        ["bsp", "contour", "exact"]
+    );
+    assert_eq!(found("use super::super::bsp::Order; use super::boxes;", 2), ["bsp"]);
+    assert_eq!(
+        found("// crate::bsp\nfn f(a: crate::scene::Scene, b: &crate::contour::Cell) {}", 2),
+        ["contour", "scene"]
+    );
+    assert_eq!(found("use crate::*;", 2), ["*"]);
 }
 
 #[test]
@@ -51,9 +82,12 @@ fn lower_layers_never_use_higher_ones() {
             if file.file_stem().is_some_and(|stem| stem == "tests") {
                 continue;
             }
-            let text = fs::read_to_string(&file).unwrap();
-            let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
-            for module in used(code.split("#[cfg(test)] mod tests {").next().unwrap_or_default()) {
+            let parents = file.strip_prefix(&root).unwrap().components().count() - 1;
+            let depth = if file.file_name().is_some_and(|name| name == "mod.rs") { parents } else { parents + 1 };
+            let code = code(&fs::read_to_string(&file).unwrap(), depth);
+            assert!(!code.contains("crate as "), "{} gives the crate another name", file.display());
+            for module in used(&code) {
+                assert_ne!(module, "*", "{} uses everything", file.display());
                 let Some(other) = LAYERS.iter().position(|&name| name == module) else { continue };
                 assert!(other <= level, "{} uses the higher layer {module}", file.display());
                 checked += 1;
