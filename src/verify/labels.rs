@@ -210,7 +210,7 @@ impl<S: Signs> Checker<'_, S> {
         }
         // The splitter measures in floating point, on corners that are rounded: so up to 1e-9 of the scene's size, or of
         // epsilon, is allowed on top.
-        let limit = epsilon * (1.0 + 1e-9) + 1e-9 * self.scene.diagonal();
+        let limit = (epsilon * (1.0 + 1e-9) + 1e-9 * self.scene.diagonal()).min(f64::MAX);
         let planes = pieces.map(|piece| self.scene.resolve_plane(self.scene.piece(piece).plane()));
         let disorder = Disorder::new(self.evidence.eye, planes.each_ref(), limit);
         let inwards = |side: &HalfSphere| disorder.inward_normal(self.signs.definition(side.splitter), side.inside);

@@ -168,3 +168,12 @@ fn slivers_of_pieces_seen_nearly_edge_on_are_excused() {
     let unexcused = Evidence { slivers: Vec::new(), ..evidence };
     unexcused.check(&scene, Arithmetic::Kernel).expect_err("the board hides a part of the floor");
 }
+
+#[test]
+fn slivers_of_the_largest_epsilon_are_excused() {
+    let (scene, image) = with_epsilon(f64::MAX, 1);
+    let evidence = image.evidence();
+    proved(&scene, &evidence, Arithmetic::Kernel, "the largest epsilon");
+    let unexcused = Evidence { slivers: Vec::new(), ..evidence };
+    assert_eq!(unexcused.check(&scene, Arithmetic::Kernel).unwrap_err().rule(), Rule::Depth);
+}
