@@ -142,7 +142,7 @@ fn a_million_equal_cells_are_refused_in_a_short_message() {
 }
 
 #[test]
-fn forged_slivers_excuse_nothing() {
+fn forged_slivers_far_from_their_plane_excuse_nothing() {
     // A square and another one behind it that fills the same directions; the second is shown.
     let square = |s: f64| [[-s, -s, s], [s, -s, s], [s, s, s], [-s, s, s]];
     let vertices = [square(1.0), square(2.0)].concat();

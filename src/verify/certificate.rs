@@ -50,8 +50,8 @@ impl Evidence {
     /// signs; or tells what is wrong, and where. Nothing is taken from the run that made the image: normals are
     /// made anew from the scene and the eye.
     ///
-    /// The cost is about that of the view itself, with [`Arithmetic::Kernel`]. Evidence that no engine made, in the
-    /// worst case, takes as much as sides of cells times pieces of the scene; millions of great circles that nearly
+    /// The cost is a few times that of the view, with [`Arithmetic::Kernel`] and epsilon 0; slivers are excused in rational
+    /// numbers, which takes longer where there are many. Evidence that no engine made, in the worst case, takes as much as sides of cells times pieces of the scene; millions of great circles that nearly
     /// coincide are refused, and slivers are no longer excused when tens of millions were looked at. What is proved, and how, is told in
     /// docs/verification.md.
     ///

@@ -133,7 +133,7 @@ fn with_an_epsilon_only_recorded_slivers_are_excused() {
 }
 
 #[test]
-fn slivers_that_are_made_up_excuse_nothing() {
+fn made_up_slivers_far_from_their_plane_excuse_nothing() {
     let (scene, image) = with_epsilon(0.0, 1);
     let mut evidence = image.evidence();
     let cell = evidence.cells.iter().position(|cell| cell.piece.is_some_and(|piece| piece.index() > 5)).unwrap();

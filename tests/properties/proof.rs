@@ -1,7 +1,7 @@
 //! Certificates: every image is proved, and what is not claimed rightly is refused.
 
 use super::{cases, hold, mode};
-use nusselt::testing::{case, check_verdict, gallery, mutated};
+use nusselt::testing::{Case, case, check_verdict, gallery, mutated};
 use nusselt::verify::Arithmetic;
 use proptest::prelude::*;
 
@@ -9,11 +9,12 @@ proptest! {
     #![proptest_config(cases(300))]
 
     #[test]
-    fn every_image_is_proved_whatever_epsilon_is(case in mode().prop_flat_map(case), coarse in any::<bool>()) {
-        let epsilon = if coarse { hold(case.scene())?.diagonal() * 1e-2 } else { 0.0 };
-        let epsilon = if epsilon.is_finite() { epsilon } else { 0.0 };
-        let case = nusselt::testing::Case { epsilon, ..case };
-        hold(hold(case.image())?.certify())?;
+    fn every_image_is_proved_whatever_epsilon_is(case in mode().prop_flat_map(case), exponent in 0i32..24) {
+        // From twice the scene's size to a millionth of it, and 0.
+        let epsilon = hold(case.scene())?.diagonal() * 2f64.powi(1 - exponent);
+        for epsilon in [0.0, epsilon].into_iter().filter(|epsilon| epsilon.is_finite()) {
+            hold(hold(Case { epsilon, ..case.clone() }.image())?.certify())?;
+        }
     }
 
     #[test]
