@@ -174,6 +174,7 @@ fn check(image: &ContourImage, directions: impl IntoIterator<Item = DVec3>, coun
         match &location {
             Location::Cell(cell) => {
                 counts.cells += 1;
+                assert_eq!(location.regions(), [Region::Cell(*cell)]);
                 let seen = image.cell(*cell).polygon();
                 match oracle.cast(eye, direction) {
                     RayAnswer::Hit { polygon, .. } => assert_eq!(seen, Some(polygon), "from {eye} towards {direction}"),
@@ -182,13 +183,23 @@ fn check(image: &ContourImage, directions: impl IntoIterator<Item = DVec3>, coun
                     RayAnswer::Boundary => {}
                 }
             }
-            Location::Arc { .. } => counts.arcs += 1,
-            Location::Vertex { beside, .. } => {
+            Location::Arc { between } => {
+                counts.arcs += 1;
+                assert_eq!(location.regions(), between);
+                assert!(between[0] < between[1], "ascending, and different");
+            }
+            Location::Vertex { corners, beside } => {
                 counts.vertices += 1;
                 counts.junctions += beside.len();
-                assert!(location.regions().len() >= 2);
+                let regions = location.regions();
+                assert!(regions.len() == corners.len() + beside.len() && regions.len() >= 2);
+                assert!(regions.is_sorted_by(|a, b| a < b), "ascending, and different");
+                assert!(corners.iter().all(|&cell| regions.contains(&Region::Cell(cell))));
             }
-            Location::Outside => counts.outside += 1,
+            Location::Outside => {
+                counts.outside += 1;
+                assert_eq!(location.regions(), [Region::Outside]);
+            }
         }
     }
 }

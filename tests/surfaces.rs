@@ -5,8 +5,8 @@ mod common;
 use common::Faces;
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
-use nusselt::contour::{Domain, Viewpoint};
-use nusselt::scene::{PolygonId, Side};
+use nusselt::contour::{Domain, SurfaceError, Viewpoint};
+use nusselt::scene::{PieceId, PolygonId, Side};
 
 #[test]
 fn a_sensor_on_a_folded_polygon_stands_on_the_piece_with_its_normal() {
@@ -75,4 +75,18 @@ fn from_far_above_one_lands_on_the_plane() {
         // off the plane only the last places of the coordinates remain.
         assert!(normal.dot(viewpoint.eye() - corners[0]).abs() < 1e-14, "from {distance}: {viewpoint:?}");
     }
+}
+
+#[test]
+fn nowhere_is_on_no_surface() {
+    let mut faces = Faces::default();
+    faces.face(&[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]].map(DVec3::from));
+    let scene = faces.build();
+    for near in [DVec3::NAN, DVec3::new(0.0, f64::INFINITY, 0.0)] {
+        let on_surface = Viewpoint::on_surface(&scene, PolygonId(0), Side::Front, near);
+        assert_eq!(on_surface.unwrap_err(), SurfaceError::NotFinite);
+        assert_eq!(Viewpoint::on_piece(&scene, PieceId(0), Side::Front, near).unwrap_err(), SurfaceError::NotFinite);
+    }
+    let unknown = Viewpoint::on_surface(&scene, PolygonId(1), Side::Front, DVec3::ZERO).unwrap_err();
+    assert_eq!(unknown, SurfaceError::UnknownPolygon { polygon: PolygonId(1), count: 1 });
 }

@@ -137,3 +137,102 @@ fn decided(x: f64, bound: f64) -> Option<Sign> {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::construct::Constructor;
+    use super::super::definition::{Direction, Point, Splitter};
+    use super::super::frame::{BitRange, Frame};
+    use super::super::{Arena, Kept3};
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The true vector, rounded from integers: `2 u` off in each component.
+    fn exact(points: &[DVec3], eye: DVec3, make: impl FnOnce(&mut Constructor<'_>) -> Kept3) -> DVec3 {
+        let frame = Frame::new(BitRange::of(points.iter().copied()), eye);
+        let mut arena = Arena::default();
+        let kept = make(&mut Constructor { frame: &frame, arena: &mut arena });
+        arena.kept_rounded(&kept).v
+    }
+
+    /// True if some multiple of the exact vector is about as close as the bound says.
+    fn holds(approx: &Approx3, exact: DVec3) -> bool {
+        if approx.slack.is_infinite() || exact == DVec3::ZERO {
+            return true;
+        }
+        let off = exact * (approx.v.dot(exact) / exact.length_squared()) - approx.v;
+        // The closest multiple is up to 3 times as far off in one component as the one that is meant.
+        off.abs().max_element() <= 3.0 * approx.error_bound() + 16.0 * U
+    }
+
+    fn coordinates() -> impl Strategy<Value = DVec3> {
+        (prop::array::uniform3(-1.0..1.0f64), prop_oneof![3 => -30i32..30, 1 => -500i32..300])
+            .prop_map(|(v, e)| DVec3::from(v) * 2f64.powi(e))
+    }
+
+    proptest! {
+        #[test]
+        fn vectors_are_as_close_as_their_bounds_say(
+            eye in coordinates(), a in coordinates(), b in coordinates(), c in coordinates(), near: bool,
+        ) {
+            // Where the eye is close to the line of the edge, much is lost.
+            let b = if near { a + (a - eye) * 0.7 + b * 1e-12 } else { b };
+            let points = [eye, a, b, c];
+            let direction = Approx3::direction(eye, a, 0.0);
+            let true_direction = exact(&points, eye, |exact| exact.keep_direction(&Direction::Point(Point::Given(a))));
+            prop_assert!(holds(&direction, true_direction), "{direction:?} {true_direction}");
+            let edges = [Splitter::Edge([a, b]), Splitter::Edge([b, c])];
+            let normals = edges.map(|edge| Approx3::splitter(&edge, eye));
+            for (normal, edge) in normals.iter().zip(&edges) {
+                let true_normal = exact(&points, eye, |exact| exact.keep_splitter(edge));
+                prop_assert!(holds(normal, true_normal), "{normal:?} {true_normal}");
+            }
+            let crossing = normals[0].cross(normals[1]);
+            let true_crossing = exact(&points, eye, |exact| exact.keep_direction(&Direction::Crossing(edges)));
+            prop_assert!(holds(&crossing, true_crossing), "{crossing:?} {true_crossing}");
+        }
+
+        #[test]
+        fn ordinary_vectors_are_known_well(
+            a in prop::array::uniform3(0.5..1.0f64), b in prop::array::uniform3(-1.0..-0.5f64), e in -300i32..300,
+        ) {
+            let scale = 2f64.powi(e / 2);
+            let (p, q) = (DVec3::from(a) * scale, DVec3::new(b[0], a[1], b[2]) * scale);
+            let known = [
+                (Approx3::given(p), 0.0),
+                (Approx3::direction(DVec3::ZERO, p, 0.0), 2.0),
+                // The cross product is at least an eighth of the product of the sizes.
+                (Approx3::edge_normal(DVec3::ZERO, p, q), 300.0),
+                (Approx3::given(p).cross(Approx3::given(q)), 400.0),
+            ];
+            for (k, (vector, units)) in known.into_iter().enumerate() {
+                let most = vector.v.abs().max_element();
+                prop_assert!((1.0..2.0).contains(&most), "{k}: {vector:?}");
+                prop_assert!(vector.error_bound() <= (units + 4.0) * U && !vector.is_poor(), "{k}: {vector:?}");
+            }
+            prop_assert!(known[0].0.not_parallel(&known[2].0));
+            prop_assert!(!known[0].0.not_parallel(&known[1].0));
+            prop_assert_eq!(known[0].0.dot_sign(&known[1].0), Some(Sign::Positive));
+            prop_assert_eq!(Approx3::given(-p).dot_sign(&known[1].0), Some(Sign::Negative));
+            prop_assert_eq!(known[0].0.dot_sign(&known[2].0), None);
+            let (x, y) = (Approx3::given(p), Approx3::given(q));
+            prop_assert_eq!(known[3].0.det_sign(&x, &y), Some(Sign::Positive));
+            prop_assert_eq!(known[3].0.det_sign(&y, &x), Some(Sign::Negative));
+            prop_assert_eq!(x.det_sign(&x, &y), None);
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_vector_is_unknown() {
+        for v in [DVec3::ZERO, DVec3::NAN, DVec3::new(1.0, f64::INFINITY, 0.0), DVec3::splat(f64::MIN_POSITIVE / 2.0)] {
+            assert!(Approx3::given(v).slack.is_infinite(), "{v}");
+        }
+        assert!(Approx3::known(DVec3::X, 0.13).slack.is_infinite());
+        let least = Approx3::known(DVec3::X, 0.125);
+        assert!(least.is_poor() && least.error_bound() >= 0.125);
+        for v in [DVec3::X * f64::MAX, DVec3::Y * f64::MIN_POSITIVE, DVec3::NEG_Z] {
+            let given = Approx3::given(v);
+            assert!((1.0..2.0).contains(&given.v.abs().max_element()) && !given.is_poor(), "{v}: {given:?}");
+        }
+    }
+}

@@ -576,10 +576,61 @@ mod tests {
         if n.negative { -value } else { value }
     }
 
+    /// The largest component of a vector has so many bits.
+    fn of_bits(arena: &mut Arena, bits: u32) -> Num3 {
+        let top = arena.shifted(1, bits - 1, false);
+        [top, arena.integer(-3), arena.integer(5)]
+    }
+
+    fn kept(arena: &mut Arena, v: Num3) -> Kept3 {
+        let mark = arena.mark();
+        let one = arena.integer(1);
+        let copy = arena.scale3(one, v);
+        arena.keep3(mark, copy)
+    }
+
+    #[test]
+    fn only_signs_beyond_the_fixed_widths_are_counted_as_arbitrary() {
+        let most = fixed::MOST_DIGITS as u32 * fixed::DIGIT;
+        for (bits, wide) in
+            [(3, 0), (61, 0), (120, 0), (121, 0), (241, 0), (481, 0), (most, 0), (most + 1, 1), (3000, 1)]
+        {
+            let mut arena = Arena::default();
+            let long = of_bits(&mut arena, bits);
+            let short = [2, 7, 1].map(|x| arena.integer(x));
+            let other = [0, 1, -1].map(|x| arena.integer(x));
+            let [kept_long, kept_short, kept_other] = [long, short, other].map(|v| kept(&mut arena, v));
+            let mut counted = |what: &str, times: u64, sign: Sign, work: &dyn Fn(&mut Arena) -> Sign| {
+                let (before, mark) = (arena.arbitrary_signs(), arena.mark());
+                assert_eq!(work(&mut arena), sign, "{what} of {bits} bits");
+                assert_eq!(arena.arbitrary_signs() - before, times * wide, "{what} of {bits} bits");
+                assert_eq!(arena.mark(), mark, "{what} of {bits} bits leaves something behind");
+            };
+            // long = (2^k, -3, 5), short = (2, 7, 1), other = (0, 1, -1): short x other = (-8, 2, 2).
+            counted("dot", 1, if bits > 3 { Sign::Positive } else { Sign::Negative }, &|a| a.dot_sign(long, short));
+            counted("dot", 1, Sign::Negative, &|a| a.dot_sign(other, long));
+            counted("det", 1, Sign::Negative, &|a| a.det_sign(long, short, other));
+            counted("det", 1, Sign::Positive, &|a| a.det_sign(short, long, other));
+            counted("det", 1, Sign::Negative, &|a| a.det_sign(short, other, long));
+            counted("height", 1, Sign::Positive, &|a| a.height_sign(other, short[0], long, short[1]));
+            counted("height", 1, Sign::Negative, &|a| a.height_sign(other, short[0].negated(), long, short[1]));
+            counted("height", 1, Sign::Positive, &|a| a.height_sign(other, long[0], short, short[1]));
+            counted("parallel", 1, Sign::Zero, &|a| a.parallel(long, short));
+            counted("parallel", 1, Sign::Positive, &|a| a.parallel(long, long));
+            counted("kept dot", 1, Sign::Negative, &|a| a.kept_dot_sign(&kept_other, &kept_long));
+            counted("kept det", 1, Sign::Negative, &|a| a.kept_det_sign(&kept_long, &kept_short, &kept_other));
+            counted("kept det", 1, Sign::Positive, &|a| a.kept_det_sign(&kept_short, &kept_long, &kept_other));
+            counted("kept det", 1, Sign::Negative, &|a| a.kept_det_sign(&kept_short, &kept_other, &kept_long));
+            counted("kept parallel", 1, Sign::Zero, &|a| a.kept_parallel(&kept_short, &kept_long));
+            counted("kept parallel", 1, Sign::Positive, &|a| a.kept_parallel(&kept_long, &kept_long));
+        }
+    }
+
     proptest! {
         #[test]
         fn arithmetic_agrees_with_big_integers(
-            a in any::<i128>(), b in any::<i128>(), c in any::<i64>(), shift in 0u32..300, m in any::<u64>(), negative: bool,
+            a in any::<i128>(), b in any::<i128>(), c in any::<i64>(), shift in prop_oneof![3 => 0u32..300, 1 => 300u32..2200],
+            m in any::<u64>(), negative: bool,
         ) {
             let mut arena = Arena::default();
             let (x, y, z) = (arena.integer(a), arena.integer(b), arena.integer(i128::from(c)));

@@ -44,3 +44,50 @@ impl SeenBox {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn vector() -> impl Strategy<Value = DVec3> {
+        prop::array::uniform3(-8i8..=8).prop_map(|v| DVec3::from(v.map(f64::from)))
+    }
+
+    proptest! {
+        #[test]
+        fn a_box_is_on_a_side_if_all_its_corners_are(from in vector(), a in vector(), b in vector(), normal in vector()) {
+            prop_assume!(normal != DVec3::ZERO);
+            let (low, high) = (a.min(b), a.max(b));
+            let corners = (0..8).map(|k| DVec3::new(
+                if k & 1 == 0 { low.x } else { high.x },
+                if k & 2 == 0 { low.y } else { high.y },
+                if k & 4 == 0 { low.z } else { high.z },
+            ));
+            // Whole numbers: exact.
+            let heights: Vec<f64> = corners.map(|p| normal.dot(p - from)).collect();
+            let side = if heights.iter().all(|&h| h > 0.0) {
+                Some(Sign::Positive)
+            } else if heights.iter().all(|&h| h < 0.0) {
+                Some(Sign::Negative)
+            } else {
+                None
+            };
+            prop_assert_eq!(SeenBox::new(from, low, high).side(&Approx3::given(normal)), side);
+        }
+    }
+
+    #[test]
+    fn what_may_be_rounded_away_is_not_told() {
+        let touching = |gap: f64| {
+            let low = DVec3::new(1e6 + gap, -1.0, -1.0);
+            SeenBox::new(DVec3::X * 1e6, low, low + 2.0).side(&Approx3::given(DVec3::X))
+        };
+        assert_eq!(touching(1e-3), Some(Sign::Positive));
+        assert_eq!(touching(2e-10), None);
+        assert_eq!(
+            SeenBox::new(DVec3::ZERO, DVec3::splat(1e299), DVec3::splat(1e300)).side(&Approx3::given(DVec3::X)),
+            None
+        );
+    }
+}

@@ -174,4 +174,17 @@ mod tests {
         assert_eq!(arena.add(x3, v[2]).sign(), Sign::Zero);
         assert_eq!(v[1].sign(), Sign::Positive);
     }
+
+    #[test]
+    fn positions_are_known_up_to_a_few_roundings() {
+        let origin = DVec3::new(3.0, -0.5, 1e-3);
+        let frame = Frame::new(BitRange::of([origin, DVec3::splat(0.25)]), origin);
+        let mut arena = Arena::default();
+        let (three, x) = (arena.integer(3), frame.relative(&mut arena, DVec3::new(4.0, -2.0, 7.0)));
+        let (position, err) = frame.position(&mut arena, x, three);
+        // A third of the way.
+        let exact = DVec3::new(10.0 / 3.0, -1.0, (2e-3 + 7.0) / 3.0);
+        assert!((position - exact).abs().cmple(err + 1e-15).all(), "{position} {err}");
+        assert!(err.cmpgt(DVec3::ZERO).all() && err.cmple(exact.abs() * 2e-15).all(), "{err}");
+    }
 }

@@ -574,3 +574,131 @@ fn range_of_direction(range: BitRange, direction: &Direction) -> BitRange {
         Direction::Crossing(splitters) => splitters.iter().fold(range, range_of_splitter),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn v(x: f64, y: f64, z: f64) -> DVec3 {
+        DVec3::new(x, y, z)
+    }
+
+    fn to(p: DVec3) -> Direction {
+        Direction::Point(Point::Given(p))
+    }
+
+    const FILTER: PredicateStats = PredicateStats { filter: 1, identity: 0, fixed: 0, arbitrary: 0 };
+    const IDENTITY: PredicateStats = PredicateStats { filter: 0, identity: 1, fixed: 0, arbitrary: 0 };
+    const FIXED: PredicateStats = PredicateStats { filter: 0, identity: 0, fixed: 1, arbitrary: 0 };
+    const ARBITRARY: PredicateStats = PredicateStats { filter: 0, identity: 0, fixed: 0, arbitrary: 1 };
+
+    /// Three points in one plane with the eye, of which no two coordinates are alike; all times `factor`.
+    fn in_one_plane(factor: f64) -> [DVec3; 3] {
+        let (p, q) = (v(1.0, 2.0, 5.0) * factor, v(3.0, -1.0, 4.0) * factor);
+        [p, q, p + q]
+    }
+
+    #[test]
+    fn every_call_is_counted_once_where_it_was_decided() {
+        let [a, b, between] = in_one_plane(1.0);
+        let off = v(0.5, 7.0, -3.0);
+        let mut kernel = Kernel::new([a, b, between, off], DVec3::ZERO);
+        let (edge, other) = (Splitter::Edge([a, b]), Splitter::Edge([b, off]));
+        let (along, third) = (Splitter::Edge([between, b]), Splitter::Edge([a, off]));
+        let plane = Plane::Points([a, b, off]);
+        let level = Plane::Axis { axis: 2, value: 4.5 };
+        let [edge_id, other_id, third_id, along_id, again_id] =
+            [edge, other, third, along, edge].map(|s| kernel.add_splitter(&s));
+        let [a_id, between_id, off_id] = [a, between, off].map(|p| kernel.add_direction(&to(p)));
+        let crossing = Direction::Crossing([edge, third]);
+        let mut counted = |what: &str, stats: PredicateStats, work: &dyn Fn(&mut Kernel) -> bool| {
+            kernel.reset_stats();
+            assert!(work(&mut kernel), "{what}: a wrong answer");
+            assert_eq!(kernel.stats(), stats, "{what}");
+        };
+        counted("side", IDENTITY, &|k| k.side(&to(a), &edge).is_zero());
+        counted("side", FIXED, &|k| k.side(&to(between), &edge).is_zero());
+        counted("side", FILTER, &|k| !k.side(&to(off), &edge).is_zero());
+        counted("side", FIXED, &|k| k.side(&crossing, &along).is_zero());
+        counted("side_of", IDENTITY, &|k| k.side_of(a_id, edge_id).is_zero());
+        counted("side_of", FIXED, &|k| k.side_of(between_id, edge_id).is_zero());
+        counted("side_of", FILTER, &|k| k.side_of(off_id, edge_id) == k.clone().side(&to(off), &edge));
+        counted("orientation", IDENTITY, &|k| k.orientation([&edge, &other, &edge]).is_zero());
+        counted("orientation", IDENTITY, &|k| k.orientation([&edge, &edge, &other]).is_zero());
+        counted("orientation", IDENTITY, &|k| k.orientation([&other, &edge, &edge]).is_zero());
+        counted("orientation", IDENTITY, &|k| k.orientation([&edge, &along, &other]).is_zero());
+        counted("orientation", FIXED, &|k| k.orientation([&edge, &along, &third]).is_zero());
+        counted("orientation", FILTER, &|k| !k.orientation([&edge, &other, &third]).is_zero());
+        counted("orientation_of", IDENTITY, &|k| k.orientation_of([edge_id, other_id, edge_id]).is_zero());
+        counted("orientation_of", IDENTITY, &|k| k.orientation_of([edge_id, edge_id, other_id]).is_zero());
+        counted("orientation_of", IDENTITY, &|k| k.orientation_of([other_id, edge_id, edge_id]).is_zero());
+        counted("orientation_of", IDENTITY, &|k| k.orientation_of([edge_id, along_id, other_id]).is_zero());
+        counted("orientation_of", FIXED, &|k| k.orientation_of([edge_id, along_id, third_id]).is_zero());
+        counted("orientation_of", FILTER, &|k| !k.orientation_of([edge_id, other_id, third_id]).is_zero());
+        counted("compare_circles", IDENTITY, &|k| k.compare_circles(&edge, &edge) == CircleRelation::Same);
+        counted("compare_circles", FIXED, &|k| k.compare_circles(&edge, &along) == CircleRelation::Same);
+        counted("compare_circles", FILTER, &|k| k.compare_circles(&edge, &other) == CircleRelation::Different);
+        counted("compare_circles_of", IDENTITY, &|k| k.compare_circles_of(edge_id, edge_id) == CircleRelation::Same);
+        counted("compare_circles_of", FIXED, &|k| k.compare_circles_of(edge_id, again_id) == CircleRelation::Same);
+        counted("compare_circles_of", FIXED, &|k| k.compare_circles_of(edge_id, along_id) == CircleRelation::Same);
+        counted("compare_circles_of", FILTER, &|k| {
+            k.compare_circles_of(edge_id, other_id) == CircleRelation::Different
+        });
+        counted("order_along", IDENTITY, &|k| k.order_along(&edge, &to(a), &to(a)) == Along::Same);
+        counted("order_along", FILTER, &|k| k.order_along(&edge, &to(a), &to(b)) == Along::Ahead);
+        counted("order_along", FILTER, &|k| k.order_along(&edge, &to(b), &to(a)) == Along::Behind);
+        counted("order_along", FIXED, &|k| k.order_along(&edge, &to(a), &to(a * 2.0)) == Along::Same);
+        counted("order_along", FIXED, &|k| k.order_along(&edge, &to(a), &to(-a)) == Along::Opposite);
+        counted("plane_side", IDENTITY, &|k| k.plane_side(&Point::Given(a), &plane).is_zero());
+        counted("plane_side", FILTER, &|k| k.plane_side(&Point::Given(a), &level).is_positive());
+        counted("plane_side", FILTER, &|k| k.plane_side(&Point::Given(v(0.0, 0.0, 4.5)), &level).is_zero());
+        counted("plane_side", FIXED, &|k| k.plane_side(&Point::Given(a + (b - off)), &plane).is_zero());
+    }
+
+    #[test]
+    fn signs_that_need_more_than_the_fixed_widths_are_counted_as_arbitrary() {
+        let [a, b, between] = in_one_plane(1.0);
+        // On one grid with these, each coordinate takes 1,900 bits.
+        let (least, most) = (v(f64::from_bits(1), 0.0, 0.0), v(0.0, 2f64.powi(800), 0.0));
+        let mut kernel = Kernel::new([a, b, least, most], DVec3::ZERO);
+        let edge = Splitter::Edge([a, b]);
+        assert_eq!(kernel.side(&to(between), &edge), Sign::Zero);
+        assert_eq!(kernel.stats(), ARBITRARY);
+        let (edge, between) = (kernel.add_splitter(&edge), kernel.add_direction(&to(between)));
+        kernel.reset_stats();
+        assert_eq!(kernel.side_of(between, edge), Sign::Zero);
+        assert_eq!(kernel.stats(), ARBITRARY);
+    }
+
+    #[test]
+    fn a_cleared_kernel_starts_anew() {
+        let [a, b, between] = in_one_plane(1.0);
+        let mut kernel = Kernel::new([a, b, between], DVec3::ZERO);
+        let first = (kernel.add_splitter(&Splitter::Edge([a, b])), kernel.add_direction(&to(between)));
+        assert_eq!(kernel.side_of(first.1, first.0), Sign::Zero);
+        kernel.clear();
+        // The same ids, other meanings: nothing that was made for the first ones is left.
+        let second = (kernel.add_splitter(&Splitter::Edge([b, v(9.0, 1.0, 0.5)])), kernel.add_direction(&to(b * 3.0)));
+        assert_eq!(first, second);
+        assert_eq!(kernel.side_of(second.1, second.0), Sign::Zero);
+        let other = kernel.add_direction(&to(between));
+        assert_ne!(kernel.side_of(other, second.0), Sign::Zero);
+    }
+
+    #[test]
+    fn the_nearer_of_two_planes_is_found() {
+        let level = |value| Plane::Axis { axis: 2, value };
+        let mut kernel = Kernel::new([], v(0.0, 0.0, 1.0));
+        for (planes, down, order) in [
+            ([4.0, 5.0], 1.0, Ordering::Less),
+            ([5.0, 4.0], 1.0, Ordering::Greater),
+            ([4.0, 4.0], 1.0, Ordering::Equal),
+            ([0.0, -1.0], -1.0, Ordering::Less),
+            ([-1.0, 0.0], -1.0, Ordering::Greater),
+        ] {
+            let direction = Direction::Given(v(0.25, -0.5, down));
+            let [near, far] = planes.map(level);
+            assert_eq!(kernel.depth_order([&near, &far], &direction), order, "{planes:?}");
+        }
+    }
+}

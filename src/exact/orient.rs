@@ -121,5 +121,38 @@ mod tests {
             prop_assert_eq!(orient3d(a, b, c, d), by_integers(a, b, c, d));
             prop_assert_eq!(orient3d(b, a, c, d), -by_integers(a, b, c, d));
         }
+
+        #[test]
+        fn the_filter_is_silent_or_right_where_it_is_close(
+            a in prop::array::uniform3(-1.0..1.0f64), b in prop::array::uniform3(-1.0..1.0f64),
+            c in prop::array::uniform3(-1.0..1.0f64), s in -2.0..2.0f64, t in -2.0..2.0f64,
+            scales in prop::array::uniform3(-60i32..60), ulps in -3i32..4,
+        ) {
+            let scale = DVec3::from(scales.map(|e| 2f64.powi(e)));
+            let [a, b, c] = [a, b, c].map(DVec3::from);
+            // Next to the plane, but for rounding and a few ulps; each axis in a scale of its own.
+            let mut d = a + s * (b - a) + t * (c - a);
+            d.y += f64::from(ulps) * f64::EPSILON;
+            let [a, b, c, d] = [a, b, c, d].map(|p| p * scale);
+            let exact = by_integers(a, b, c, d);
+            prop_assert!(orient3d_filter(a, b, c, d).is_none_or(|sign| sign == exact));
+            prop_assert_eq!(orient3d(a, b, c, d), exact);
+        }
+    }
+
+    #[test]
+    fn the_filter_decides_what_is_not_close() {
+        for scale in [1e-50, 1.0, 1e30] {
+            let p = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * scale;
+            for (a, b, c) in [
+                (p(1.0, 0.0, 0.1), p(0.0, 1.0, 0.1), p(-1.0, -1.0, 0.1)),
+                (p(0.1, 1.0, 0.0), p(0.1, 0.0, 1.0), p(0.1, -1.0, -1.0)),
+                (p(0.0, 0.1, 1.0), p(1.0, 0.1, 0.0), p(-1.0, 0.1, -1.0)),
+            ] {
+                let above = (a + b + c) / 3.0 + p(0.01, 0.01, 0.01);
+                assert_eq!(orient3d_filter(a, b, c, above), Some(Sign::Positive), "{a} {b} {c}");
+                assert_eq!(orient3d_filter(b, a, c, above), Some(Sign::Negative), "{a} {b} {c}");
+            }
+        }
     }
 }

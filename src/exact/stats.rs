@@ -37,3 +37,16 @@ impl AddAssign for PredicateStats {
         self.arbitrary += other.arbitrary;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn calls_are_the_sum_of_all_stages() {
+        let mut stats = PredicateStats { filter: 1, identity: 20, fixed: 300, arbitrary: 4000 };
+        assert_eq!((stats.calls(), stats.undecided()), (4321, 4320));
+        stats += PredicateStats { filter: 5, identity: 60, fixed: 500, arbitrary: 2000 };
+        assert_eq!(stats, PredicateStats { filter: 6, identity: 80, fixed: 800, arbitrary: 6000 });
+    }
+}

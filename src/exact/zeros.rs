@@ -102,3 +102,106 @@ pub(crate) fn point_in_plane(point: &Point, plane: &Plane) -> bool {
         _ => false,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EYE: DVec3 = DVec3::new(1.0, 2.0, 3.0);
+
+    /// The bits for the axes named.
+    fn axes(names: &str) -> ZeroComponents {
+        ZeroComponents::from_fn(|k| names.contains(["x", "y", "z"][k]))
+    }
+
+    fn v(x: f64, y: f64, z: f64) -> DVec3 {
+        DVec3::new(x, y, z)
+    }
+
+    #[test]
+    fn normals_are_zero_where_definitions_say_so() {
+        let level = |axis, value| Plane::Axis { axis, value };
+        let tilted = Plane::Points([DVec3::X, DVec3::Y, DVec3::Z]);
+        for (splitter, names) in [
+            // As high as the eye in x: the normal is along x.
+            (Splitter::Edge([v(1.0, 5.0, 7.0), v(1.0, 6.0, 9.0)]), "yz"),
+            (Splitter::Edge([v(4.0, 2.0, 7.0), v(5.0, 2.0, 9.0)]), "xz"),
+            (Splitter::Edge([v(4.0, 5.0, 3.0), v(5.0, 6.0, 3.0)]), "xy"),
+            // Along an axis.
+            (Splitter::Edge([v(4.0, 5.0, 7.0), v(5.0, 5.0, 7.0)]), "x"),
+            (Splitter::Edge([v(4.0, 5.0, 7.0), v(4.0, 6.0, 7.0)]), "y"),
+            (Splitter::Edge([v(4.0, 5.0, 7.0), v(4.0, 5.0, 9.0)]), "z"),
+            // Only one end is as high as the eye; the ends share one coordinate only.
+            (Splitter::Edge([v(1.0, 5.0, 7.0), v(5.0, 6.0, 9.0)]), ""),
+            (Splitter::Edge([v(4.0, 5.0, 7.0), v(4.0, 6.0, 9.0)]), ""),
+            (Splitter::Crease([level(0, 5.0), level(2, 7.0)]), "y"),
+            (Splitter::Crease([level(0, 5.0), tilted]), ""),
+            (Splitter::Given(v(0.0, -0.0, 5e-324)), "xy"),
+            (Splitter::Parallel(level(1, 9.0)), "xz"),
+            (Splitter::Parallel(tilted), ""),
+        ] {
+            assert_eq!(ZeroComponents::of_splitter(&splitter, EYE), axes(names), "{splitter:?}");
+        }
+    }
+
+    #[test]
+    fn directions_are_zero_where_definitions_say_so() {
+        let level = |axis, value| Plane::Axis { axis, value };
+        let tilted = Plane::Points([DVec3::X, DVec3::Y, DVec3::Z]);
+        let upright = |x: f64| Splitter::Given(v(x, 1.0, 0.0));
+        for (direction, names) in [
+            (Direction::Given(v(0.0, 1.0, -0.0)), "xz"),
+            (Direction::Point(Point::Given(v(1.0, 5.0, 3.0))), "xz"),
+            (Direction::Point(Point::EdgePlane([v(1.0, 5.0, 7.0), v(1.0, 9.0, 8.0)], level(2, 7.5))), "x"),
+            (Direction::Point(Point::EdgePlane([v(1.0, 5.0, 7.0), v(2.0, 9.0, 8.0)], level(1, 7.5))), ""),
+            (Direction::Point(Point::EdgePlane([v(0.0, 5.0, 7.0), v(4.0, 9.0, 8.0)], level(0, 1.0))), "x"),
+            (Direction::Point(Point::Planes([level(0, 1.0), level(1, 5.0), tilted])), "x"),
+            (Direction::Point(Point::Planes([tilted, level(2, 3.0), level(1, 2.0)])), "yz"),
+            // Two circles through an axis cross there.
+            (Direction::Crossing([upright(3.0), upright(4.0)]), "xy"),
+            (Direction::Crossing([upright(3.0), Splitter::Given(v(1.0, 0.0, 2.0))]), ""),
+        ] {
+            assert_eq!(ZeroComponents::of_direction(&direction, EYE), axes(names), "{direction:?}");
+        }
+    }
+
+    #[test]
+    fn zeros_are_shared_by_all_three_and_cover_all_axes() {
+        assert!(ZeroComponents::shared([axes("xy"), axes("yz"), axes("y")]));
+        assert!(!ZeroComponents::shared([axes("xy"), axes("yz"), axes("xz")]));
+        assert!(axes("xy").cover(axes("z")) && axes("xyz").cover(axes("")));
+        assert!(!axes("xy").cover(axes("x")) && !axes("").cover(axes("yz")));
+    }
+
+    #[test]
+    fn what_is_defined_from_the_same_ends_and_planes_meets() {
+        let (a, b, c, d) = (DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE);
+        let plane = |k: f64| Plane::Axis { axis: 0, value: k };
+        let (edge, other) = (Splitter::Edge([a, b]), Splitter::Edge([c, d]));
+        let cut = |p, q| Direction::Point(Point::EdgePlane([p, q], plane(0.5)));
+        assert!(defined_on(&Direction::Crossing([other, edge]), &edge));
+        assert!(!defined_on(&Direction::Crossing([other, edge]), &Splitter::Edge([a, c])));
+        assert!(defined_on(&Direction::Point(Point::Given(b)), &edge));
+        assert!(!defined_on(&Direction::Point(Point::Given(c)), &edge));
+        assert!(defined_on(&cut(a, b), &edge) && defined_on(&cut(b, a), &edge));
+        assert!(!defined_on(&cut(a, c), &edge) && !defined_on(&cut(c, b), &edge) && !defined_on(&cut(b, c), &edge));
+        let three = Direction::Point(Point::Planes([plane(1.0), plane(2.0), plane(3.0)]));
+        assert!(defined_on(&three, &Splitter::Crease([plane(3.0), plane(1.0)])));
+        assert!(!defined_on(&three, &Splitter::Crease([plane(3.0), plane(4.0)])));
+        assert!(!defined_on(&Direction::Given(a), &Splitter::Given(a)));
+
+        let edge = |p, q| Splitter::Edge([p, q]);
+        assert!(have_common_end([&edge(a, b), &edge(c, a), &edge(a, d)]));
+        assert!(!have_common_end([&edge(a, b), &edge(b, c), &edge(c, a)]));
+        assert!(!have_common_end([&edge(a, b), &edge(a, c), &edge(b, d)]));
+        assert!(!have_common_end([&edge(a, b), &edge(c, a), &Splitter::Given(a)]));
+
+        let points = Plane::Points([a, b, c]);
+        assert!(point_in_plane(&Point::Given(c), &points) && !point_in_plane(&Point::Given(d), &points));
+        assert!(point_in_plane(&Point::EdgePlane([a, d], plane(2.0)), &plane(2.0)));
+        assert!(point_in_plane(&Point::EdgePlane([a, c], plane(2.0)), &points));
+        assert!(!point_in_plane(&Point::EdgePlane([a, d], plane(2.0)), &points));
+        assert!(point_in_plane(&Point::Planes([points, plane(1.0), plane(2.0)]), &plane(2.0)));
+        assert!(!point_in_plane(&Point::Planes([points, plane(1.0), plane(2.0)]), &plane(3.0)));
+    }
+}

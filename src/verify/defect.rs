@@ -257,3 +257,219 @@ pub(super) fn rounded_crossing(normals: [DVec3; 2], signs: [Sign; 2]) -> DVec3 {
     let d = a.cross(b).normalize_or_zero();
     if signs[0] * signs[1] == Sign::Negative { -d } else { d }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::{Axis, Material, Side};
+    use crate::verify::{EvidenceCell, HalfSphere};
+
+    /// Two triangles of one vertex each off the plane z = 0, and a third one apart from both.
+    fn three_triangles() -> Scene {
+        let vertices = [
+            [0.0, 0.0, 1.0],
+            [1.0, 0.0, 1.0],
+            [0.0, 1.0, 1.0],
+            [1.0, 1.0, 1.5],
+            [5.0, 5.0, 2.0],
+            [6.0, 5.0, 2.0],
+            [5.0, 6.0, 2.5],
+        ];
+        let faces = [vec![0, 1, 2], vec![2, 1, 3], vec![4, 5, 6]];
+        Scene::builder().mesh(&vertices, &faces, Material::new("grey")).build().expect("three triangles")
+    }
+
+    fn edge(a: u32, b: u32) -> Splitter {
+        Splitter::Edge([a, b].map(VertexId))
+    }
+
+    fn flat(a: u32, b: u32, c: u32) -> SupportingPlane {
+        SupportingPlane::Points([a, b, c].map(VertexId))
+    }
+
+    /// Evidence of one cell of background, bounded by one splitter.
+    fn bounded_by(splitter: Splitter) -> Evidence {
+        Evidence {
+            eye: DVec3::new(0.5, 0.25, 0.0),
+            domain: EvidenceDomain::Sphere,
+            epsilon: 0.0,
+            slivers: Vec::new(),
+            splitters: vec![splitter],
+            cells: vec![EvidenceCell {
+                piece: None,
+                sides: vec![
+                    HalfSphere { splitter: 0, inside: Sign::Positive },
+                    HalfSphere { splitter: 9, inside: Sign::Positive },
+                ],
+            }],
+        }
+    }
+
+    fn not_convex(cell: u32) -> Defect {
+        Defect::NotConvex { cell, corner: 2, side: 1 }
+    }
+
+    fn unbalanced(circle: Splitter, cells: Vec<u32>) -> Defect {
+        Defect::Unbalanced { circle, stretch: [DVec3::X, DVec3::Y], count: -1, expected: 1, cells }
+    }
+
+    #[test]
+    fn every_defect_tells_its_rule_its_cells_and_where_it_is() {
+        let (piece, by, towards) = (PieceId(4), PieceId(5), DVec3::new(0.5, -1.0, 0.0));
+        let place = "splitter 3".to_owned();
+        let all: [(Defect, Rule, &[u32], &str); 9] = [
+            (
+                Defect::Malformed { place, what: "a number is not finite" },
+                Rule::Form,
+                &[],
+                "splitter 3: a number is not finite; the evidence is damaged, or was made for another scene",
+            ),
+            (
+                Defect::BehindSurface { piece },
+                Rule::Form,
+                &[],
+                "the eye lies behind piece 4, which it is said to be on",
+            ),
+            (
+                not_convex(7),
+                Rule::Convex,
+                &[7],
+                "cell 7 is not a convex cone: its corner 2 is not strictly inside of its side 1",
+            ),
+            (
+                unbalanced(edge(3, 1), vec![2, 6]),
+                Rule::Balance,
+                &[2, 6],
+                "there is a gap or an overlap from (1, 0, 0) to (0, 1, 0) along the great circle through vertices 3 and 1: \
+                 the cells on its left less those on its right are -1, not 1; cells there: 2, 6",
+            ),
+            (
+                Defect::Covered { direction: towards, cells: vec![8, 9], expected: 1 },
+                Rule::Witness,
+                &[8, 9],
+                "direction (0.5, -1, 0) lies in 2 cells, not in 1: 8, 9",
+            ),
+            (Defect::EdgeOn { cell: 7, piece }, Rule::Cone, &[7], "cell 7 shows piece 4, which is seen edge-on"),
+            (
+                Defect::OutsideCone { cell: 7, piece, towards },
+                Rule::Cone,
+                &[7],
+                "cell 7 reaches beyond an edge of piece 4, which it shows, towards (0.5, -1, 0)",
+            ),
+            (
+                Defect::NotBackground { cell: 7, piece, towards },
+                Rule::Cone,
+                &[7],
+                "cell 7 shows background where piece 4 is seen, towards (0.5, -1, 0)",
+            ),
+            (
+                Defect::Hidden { cell: 7, piece, by, towards },
+                Rule::Depth,
+                &[7],
+                "cell 7 shows piece 4, which piece 5 hides, towards (0.5, -1, 0)",
+            ),
+        ];
+        for (defect, rule, cells, words) in all {
+            assert_eq!(defect.rule(), rule, "{words}");
+            assert_eq!(defect.cells(), cells, "{words}");
+            assert_eq!(defect.to_string(), words);
+        }
+    }
+
+    #[test]
+    fn great_circles_are_named_by_what_they_are_defined_from() {
+        let level = SupportingPlane::Axis { axis: Axis::Y, value: 2.5 };
+        for (circle, words) in [
+            (
+                Splitter::Crease([level, flat(0, 1, 2)]),
+                "along the great circle through the crease of plane y = 2.5 and the plane of vertices 0, 1 and 2: ",
+            ),
+            (Splitter::Given(DVec3::new(0.0, 0.5, -3.0)), "along the great circle with normal (0, 0.5, -3): "),
+            (Splitter::Parallel(level), "along the great circle parallel to plane y = 2.5: "),
+        ] {
+            let message = unbalanced(circle, vec![]).to_string();
+            assert!(message.contains(words), "{message}");
+            assert!(message.ends_with("cells there: none"), "{message}");
+        }
+    }
+
+    #[test]
+    fn long_lists_of_cells_are_cut_short_and_say_so() {
+        let lists = |n: u32| unbalanced(edge(0, 1), (0..n).collect()).to_string();
+        assert!(lists(12).ends_with(": 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11"), "{}", lists(12));
+        assert!(lists(13).ends_with(" 10, 11 and 1 more"), "{}", lists(13));
+    }
+
+    #[test]
+    fn polygons_that_bound_a_cell_or_are_named_take_part() {
+        const NONE: [u32; 0] = [];
+        let scene = three_triangles();
+        let level = SupportingPlane::Axis { axis: Axis::Z, value: 1.0 };
+        let take_part = |splitter, defect: &Defect| {
+            let polygons = defect.polygons(&bounded_by(splitter), &scene);
+            polygons.into_iter().map(|polygon| polygon.0).collect::<Vec<_>>()
+        };
+        // The edge that two triangles share, whichever way; an edge of one; the planes of pieces.
+        assert_eq!(take_part(edge(2, 1), &not_convex(0)), [0, 1]);
+        assert_eq!(take_part(edge(1, 2), &not_convex(0)), [0, 1]);
+        assert_eq!(take_part(edge(5, 4), &not_convex(0)), [2]);
+        let planes = scene.planes();
+        let plane = |polygon: u32| scene.pieces().find(|p| p.polygon().0 == polygon).expect("one piece each").plane();
+        assert!(planes.contains(&plane(1)));
+        assert_eq!(take_part(Splitter::Parallel(plane(2)), &not_convex(0)), [2]);
+        assert_eq!(take_part(Splitter::Crease([plane(2), level]), &not_convex(0)), [2]);
+        // A number names nothing in the scene; nor does a cell that does not exist.
+        assert_eq!(take_part(Splitter::Given(DVec3::Z), &not_convex(0)), NONE);
+        assert_eq!(take_part(edge(2, 1), &not_convex(1)), NONE);
+        // What is in front, what is there, and what the eye is on; a piece that does not exist is left out.
+        let (towards, given) = (DVec3::Z, Splitter::Given(DVec3::Z));
+        let hidden = |by| Defect::Hidden { cell: 0, piece: PieceId(0), by, towards };
+        assert_eq!(take_part(given, &hidden(PieceId(2))), [2]);
+        assert_eq!(take_part(given, &hidden(PieceId(3))), NONE);
+        assert_eq!(take_part(given, &Defect::NotBackground { cell: 0, piece: PieceId(1), towards }), [1]);
+        assert_eq!(take_part(given, &Defect::BehindSurface { piece: PieceId(1) }), [1]);
+        let mut evidence = bounded_by(given);
+        evidence.domain = EvidenceDomain::Above(PieceId(2), Side::Back);
+        assert_eq!(not_convex(0).polygons(&evidence, &scene), [PolygonId(2)]);
+        evidence.cells[0].piece = Some(PieceId(0));
+        assert_eq!(not_convex(0).polygons(&evidence, &scene), [PolygonId(0), PolygonId(2)]);
+    }
+
+    #[test]
+    fn the_rust_text_holds_the_domain_the_eye_and_the_polygons() {
+        let scene = three_triangles();
+        let text = |domain| {
+            let evidence = Evidence { domain, ..bounded_by(edge(4, 5)) };
+            not_convex(0).to_rust(&evidence, &scene)
+        };
+        let triangle =
+            "    &[DVec3::new(5.0, 5.0, 2.0), DVec3::new(6.0, 5.0, 2.0), DVec3::new(5.0, 6.0, 2.5)], // polygon 2\n";
+        let whole = format!(
+            "// {}\n// domain: all directions\n// epsilon: 0.0\nlet eye = DVec3::new(0.5, 0.25, 0.0);\n\
+             let polygons: &[&[DVec3]] = &[\n{triangle}];\n",
+            not_convex(0)
+        );
+        assert_eq!(text(EvidenceDomain::Sphere), whole);
+        for (domain, words) in [
+            (EvidenceDomain::Hemisphere(DVec3::Z), "// domain: the hemisphere about DVec3::new(0.0, 0.0, 1.0)\n"),
+            (EvidenceDomain::Above(PieceId(2), Side::Back), "// domain: above the Back of polygon 2\n"),
+            (
+                EvidenceDomain::Above(PieceId(3), Side::Front),
+                "// domain: above the Front of piece 3, which does not exist\n",
+            ),
+        ] {
+            let text = text(domain);
+            assert!(text.contains(words) && text.contains(triangle), "{text}");
+        }
+    }
+
+    #[test]
+    fn great_circles_cross_to_the_side_that_their_signs_say() {
+        let normals = [DVec3::X * 3.0, DVec3::Y * 0.25];
+        let crossing = |a, b| rounded_crossing(normals, [a, b]);
+        assert_eq!(crossing(Sign::Positive, Sign::Positive), DVec3::Z);
+        assert_eq!(crossing(Sign::Negative, Sign::Negative), DVec3::Z);
+        assert_eq!(crossing(Sign::Negative, Sign::Positive), -DVec3::Z);
+        assert_eq!(crossing(Sign::Positive, Sign::Negative), -DVec3::Z);
+    }
+}

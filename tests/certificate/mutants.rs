@@ -1,12 +1,12 @@
 //! Changes to evidence: those that change what is claimed are refused by the rule that they break, the others pass.
 
 use super::common::scenes::{Case, generated, odd, soups};
-use super::common::{Random, cluttered_room};
+use super::common::{Faces, Random, cluttered_room};
 use super::image;
 use glam::DVec3;
 use nusselt::contour::{Domain, Viewpoint};
 use nusselt::exact::{self, CircleRelation, Kernel, Sign};
-use nusselt::scene::{Material, PieceId, Scene, Splitter};
+use nusselt::scene::{Material, PieceId, PolygonId, Scene, Side, Splitter};
 use nusselt::verify::{Arithmetic, Defect, Evidence, EvidenceCell, EvidenceDomain, HalfSphere, Rule};
 
 /// Evidence of a few hundred cells from scenes of all kinds.
@@ -441,4 +441,42 @@ fn damaged_evidence_is_refused_with_a_reason() {
     assert_eq!(refused(&scene, &flat, "two sides").rule(), Rule::Convex);
     flat.cells[0].sides.clear();
     assert_eq!(refused(&scene, &flat, "no sides").rule(), Rule::Convex);
+}
+
+#[test]
+fn an_eye_behind_the_surface_it_is_said_to_be_on_is_refused() {
+    let mut faces = Faces::default();
+    faces.face(&[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]].map(DVec3::from));
+    let scene = faces.build();
+    let near = DVec3::new(1.0, 1.0, 1.0);
+    for (side, behind, before) in [(Side::Front, 0.5, 1.5), (Side::Back, 1.5, 0.5)] {
+        let viewpoint = Viewpoint::on_surface(&scene, PolygonId(0), side, near).unwrap();
+        let mut evidence = image(&scene, &viewpoint, &Domain::Above).evidence();
+        passes(&scene, &evidence, "on the surface");
+        evidence.eye.z = before;
+        passes(&scene, &evidence, "above the surface nothing else is seen");
+        evidence.eye.z = behind;
+        let defect = refused(&scene, &evidence, "behind the surface");
+        assert!(matches!(defect, Defect::BehindSurface { piece: PieceId(0) }), "{defect}");
+    }
+}
+
+#[test]
+fn a_horizon_without_cells_is_named_by_what_it_is_defined_from() {
+    let mut faces = Faces::default();
+    faces.face(&[[0.0, 0.0, 1.0], [4.0, 0.0, 1.0], [0.0, 4.0, 1.0]].map(DVec3::from));
+    let scene = faces.build();
+    let viewpoint = Viewpoint::on_surface(&scene, PolygonId(0), Side::Front, DVec3::ONE).unwrap();
+    let mut evidence = image(&scene, &viewpoint, &Domain::Above).evidence();
+    evidence.cells.clear();
+    evidence.splitters.clear();
+    let named = |evidence: &Evidence| match refused(&scene, evidence, "no cells") {
+        Defect::Unbalanced { circle, count: 0, expected: 1, .. } => circle,
+        defect => panic!("{defect}"),
+    };
+    let plane = scene.piece(PieceId(0)).plane();
+    assert_eq!(named(&evidence), Splitter::Parallel(plane));
+    let normal = DVec3::new(1.0, 2.0, 5.0);
+    evidence.domain = EvidenceDomain::Hemisphere(normal);
+    assert_eq!(named(&evidence), Splitter::Given(normal));
 }
