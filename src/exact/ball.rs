@@ -114,6 +114,17 @@ mod tests {
         (any::<i64>(), 0..60u32).prop_map(|(m, shift)| (m >> 7 >> shift) as f64 * LEAST)
     }
 
+    #[test]
+    fn a_divisor_hardly_larger_than_its_radius_bounds_the_quotient() {
+        // Between 2^-50 and 2: the quotient may be 2^50.
+        let least = 2f64.powi(-50);
+        let quotient = Ball::exact(1.0).div(Ball::new(1.0, 1.0 - least));
+        assert!(quotient.rad.is_finite());
+        for divisor in [least, 1.0, 2.0 - least] {
+            assert!(holds(quotient, &(rational(1.0) / rational(divisor))), "{divisor}");
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
         #[test]
