@@ -370,7 +370,9 @@ fn visible_parts_in_space_cover_what_is_seen() {
     folder.run("contour two.obj --eye 0,0,0 --normal 0,0,1 -o seen.obj", 0);
     let text = folder.read("seen.obj");
     assert!(text.contains("mtllib seen.mtl") && text.contains("g polygon_0") && text.contains("g polygon_1"));
-    let scene = nusselt::io::read_scene(&folder.0.join("seen.obj")).expect("it reads").scene;
+    let scene = nusselt::io::read_scene(&folder.0.join("seen.obj"), &nusselt::io::ReadOptions::default())
+        .expect("it reads")
+        .scene;
     let mut areas = [0.0; 2];
     for polygon in scene.polygons() {
         let ring: Vec<_> = polygon.rings()[0].iter().map(|&v| scene.vertex(v)).collect();

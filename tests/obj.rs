@@ -1,7 +1,7 @@
 //! OBJ files are read as they are meant, or refused with all that is wrong.
 
 use glam::DVec3;
-use nusselt::io::{self, Loaded, ReadError, obj};
+use nusselt::io::{self, Loaded, ReadError, ReadOptions, obj};
 use nusselt::scene::{Material, PolygonId, Shape};
 use proptest::prelude::*;
 use std::fs;
@@ -12,7 +12,7 @@ fn no_files(_: &str) -> std::io::Result<Vec<u8>> {
 }
 
 fn parse(text: &str) -> Result<Loaded, ReadError> {
-    obj::parse(text.as_bytes(), "test.obj", no_files)
+    obj::parse(text.as_bytes(), "test.obj", &ReadOptions::default(), no_files)
 }
 
 /// All faults, one a line.
@@ -60,7 +60,7 @@ fn materials_come_from_libraries_with_blanks_in_their_names() {
     let text = format!(
         "mtllib my lamp.mtl\nmtllib one.mtl two.mtl\n{SQUARE}f 1 2 3\nusemtl lamp\nf 1 2 3\nusemtl two\nf 1 2 3\nusemtl none\nf 1 2 3"
     );
-    let loaded = obj::parse(text.as_bytes(), "test.obj", |name| match name {
+    let loaded = obj::parse(text.as_bytes(), "test.obj", &ReadOptions::default(), |name| match name {
         "my lamp.mtl" => Ok(b"newmtl lamp\nKd .2\nKs 0.1 0.2 0.3\nNs 12\nKe 1 2 3e2\nKa 9 9 9\nmap_Kd x.png".to_vec()),
         "two.mtl" => Ok(b"Kd 7 7 7\nnewmtl two\nKd spectral x.rfl\n".to_vec()),
         _ => no_files(name),
@@ -107,7 +107,9 @@ fn everything_that_is_wrong_is_named_with_its_line() {
 fn bad_materials_are_named_where_they_are_defined() {
     let text = format!("mtllib m.mtl\n{SQUARE}usemtl a\nf 1 2 3\n");
     let read = |library: &str| {
-        obj::parse(text.as_bytes(), "test.obj", |_| Ok(library.as_bytes().to_vec())).unwrap_err().to_string()
+        obj::parse(text.as_bytes(), "test.obj", &ReadOptions::default(), |_| Ok(library.as_bytes().to_vec()))
+            .unwrap_err()
+            .to_string()
     };
     assert!(read("newmtl b\nnewmtl a\nKd 0 -1 0").starts_with("m.mtl:2: material 0 (a)"));
     assert_eq!(
@@ -139,7 +141,14 @@ fn odd_files_are_scenes_without_faces() {
 #[test]
 fn no_name_of_a_material_is_default() {
     let text = format!("mtllib m\n{SQUARE}f 1 2 3\nusemtl a\nf 1 2 3\nusemtl\nf 1 2 3\nusemtl default\nf 1 2 3\n");
-    let loaded = obj::parse(text.as_bytes(), "test.obj", |_| Ok(b"newmtl a\nnewmtl\nKd 1 0 0".to_vec())).unwrap();
+    let loaded =
+        obj::parse(
+            text.as_bytes(),
+            "test.obj",
+            &ReadOptions::default(),
+            |_| Ok(b"newmtl a\nnewmtl\nKd 1 0 0".to_vec()),
+        )
+        .unwrap();
     assert_eq!(loaded.warnings, [""; 0]);
     let materials = loaded.scene.materials();
     assert_eq!(materials.iter().map(|m| m.name.as_str()).collect::<Vec<_>>(), ["default", "a"]);
@@ -154,12 +163,15 @@ fn the_files_that_were_read_are_known() {
     let path = folder.join("x.obj");
     fs::write(&path, format!("mtllib a.mtl b.mtl\nmtllib ./a.mtl\n{SQUARE}f 1 2 3\n")).unwrap();
     fs::write(folder.join("a.mtl"), "newmtl a\n").unwrap();
-    assert_eq!(io::read_scene(&path).unwrap().files, [path.clone(), folder.join("a.mtl")]);
+    assert_eq!(io::read_scene(&path, &ReadOptions::default()).unwrap().files, [path.clone(), folder.join("a.mtl")]);
     // A folder is no file to read, whatever it is called.
-    let error = io::read_scene(&{
-        fs::create_dir(folder.join("d.obj")).unwrap();
-        folder.join("d.obj")
-    })
+    let error = io::read_scene(
+        &{
+            fs::create_dir(folder.join("d.obj")).unwrap();
+            folder.join("d.obj")
+        },
+        &ReadOptions::default(),
+    )
     .unwrap_err();
     assert!(error.to_string().contains("not a regular file"), "{error}");
     fs::remove_dir_all(&folder).unwrap();
@@ -167,10 +179,13 @@ fn the_files_that_were_read_are_known() {
 
 #[test]
 fn endings_decide_the_format() {
-    let error = io::read_scene(Path::new("scene.xyz")).unwrap_err();
+    let error = io::read_scene(Path::new("scene.xyz"), &ReadOptions::default()).unwrap_err();
     assert_eq!(error.to_string(), "cannot read scene.xyz: its ending is not one of .obj; convert it or rename it");
-    assert!(matches!(io::read_scene(Path::new("obj")), Err(ReadError::UnknownFormat { .. })));
-    assert!(matches!(io::read_scene(Path::new("no such FILE.OBJ")), Err(ReadError::Io { .. })));
+    assert!(matches!(io::read_scene(Path::new("obj"), &ReadOptions::default()), Err(ReadError::UnknownFormat { .. })));
+    assert!(matches!(
+        io::read_scene(Path::new("no such FILE.OBJ"), &ReadOptions::default()),
+        Err(ReadError::Io { .. })
+    ));
 }
 
 #[test]
@@ -189,7 +204,7 @@ fn what_is_written_is_read_back_bit_for_bit() {
     ];
     let mut bytes = Vec::new();
     obj::write(&mut bytes, &groups, Some("m.mtl")).unwrap();
-    let loaded = obj::parse(&bytes, "test.obj", |_| Ok(b"newmtl grey _\n".to_vec())).unwrap();
+    let loaded = obj::parse(&bytes, "test.obj", &ReadOptions::default(), |_| Ok(b"newmtl grey _\n".to_vec())).unwrap();
     assert_eq!(loaded.warnings, [""; 0]);
     let scene = loaded.scene;
     for (polygon, expected) in scene.polygons().zip(&groups[0].polygons) {
@@ -208,7 +223,7 @@ fn materials_are_read_back_as_written() {
     let mut library = Vec::new();
     io::mtl::write(&mut library, std::slice::from_ref(&lamp)).unwrap();
     let text = format!("mtllib m\n{SQUARE}usemtl lamp\nf 1 2 3");
-    let loaded = obj::parse(text.as_bytes(), "test.obj", |_| Ok(library.clone())).unwrap();
+    let loaded = obj::parse(text.as_bytes(), "test.obj", &ReadOptions::default(), |_| Ok(library.clone())).unwrap();
     assert_eq!(loaded.scene.materials(), [lamp]);
 }
 
@@ -254,7 +269,8 @@ fn real_files_load() {
     assert!(!paths.is_empty());
     for path in paths {
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let Loaded { scene, warnings, .. } = io::read_scene(&path).unwrap_or_else(|error| panic!("{error}"));
+        let Loaded { scene, warnings, .. } =
+            io::read_scene(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
         let count = |shape| scene.polygons().filter(|polygon| polygon.shape() == shape).count();
         let shapes = [Shape::Convex, Shape::Concave, Shape::NonPlanar, Shape::Degenerate].map(count);
         eprintln!(
@@ -281,7 +297,7 @@ proptest! {
 
     #[test]
     fn random_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
-        let _ = obj::parse(&bytes, "random.obj", |_| Ok(bytes.clone()));
+        let _ = obj::parse(&bytes, "random.obj", &ReadOptions::default(), |_| Ok(bytes.clone()));
     }
 
     #[test]
@@ -298,7 +314,7 @@ proptest! {
         for (keyword, rest, end) in &lines {
             text.extend([*keyword, " ", &rest.join(" "), end]);
         }
-        if let Err(error) = obj::parse(text.as_bytes(), "random.obj", |_| Ok(text.clone().into_bytes())) {
+        if let Err(error) = obj::parse(text.as_bytes(), "random.obj", &ReadOptions::default(), |_| Ok(text.clone().into_bytes())) {
             prop_assert!(error.to_string().contains(": "));
         }
     }

@@ -6,7 +6,7 @@ use common::Random;
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::contour::{Domain, Location, Viewpoint};
-use nusselt::io::read_scene;
+use nusselt::io::{ReadOptions, read_scene};
 use nusselt::verify::{RayAnswer, RayOracle};
 use std::path::{Path, PathBuf};
 
@@ -35,7 +35,7 @@ fn views_of_real_scenes_are_proved_and_show_what_rays_meet() {
     let mut random = Random(4);
     let (mut compared, mut excused) = (0, 0);
     for path in paths {
-        let scene = read_scene(&path).expect("a scene that can be used").scene;
+        let scene = read_scene(&path, &ReadOptions::default()).expect("a scene that can be used").scene;
         let bsp = SceneBsp::build(&scene, &BspOptions::default()).expect("epsilon is 0");
         let oracle = RayOracle::new(&scene);
         let (low, high) = scene.bounds().expect("a scene with vertices");

@@ -7,5 +7,5 @@ fuzz_target!(|data: &[u8]| {
     // The part after the first zero byte is the material file.
     let mut parts = data.splitn(2, |&byte| byte == 0);
     let (obj, mtl) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
-    let _ = nusselt::io::obj::parse(obj, "fuzz.obj", |_| Ok(mtl.to_vec()));
+    let _ = nusselt::io::obj::parse(obj, "fuzz.obj", &nusselt::io::ReadOptions::default(), |_| Ok(mtl.to_vec()));
 });

@@ -47,7 +47,11 @@ pub struct Loaded {
     pub files: Vec<PathBuf>,
 }
 
-type Reader = fn(&Path) -> Result<Loaded, ReadError>;
+/// How a scene is read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ReadOptions {}
+
+type Reader = fn(&Path, &ReadOptions) -> Result<Loaded, ReadError>;
 
 /// The formats, by the ending of the file name.
 const READERS: &[(&str, Reader)] = &[("obj", obj::read)];
@@ -64,11 +68,11 @@ fn read_regular(path: &Path) -> IoResult<Vec<u8>> {
 ///
 /// # Errors
 /// If the file cannot be read, its ending is not known, or what it contains cannot be used.
-pub fn read_scene(path: &Path) -> Result<Loaded, ReadError> {
+pub fn read_scene(path: &Path, options: &ReadOptions) -> Result<Loaded, ReadError> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let is_reader_of = |ending: &str| name.strip_suffix(ending).is_some_and(|stem| stem.ends_with('.'));
     match READERS.iter().find(|(ending, _)| is_reader_of(ending)) {
-        Some((_, read)) => read(path),
+        Some((_, read)) => read(path, options),
         None => Err(ReadError::UnknownFormat {
             path: path.to_owned(),
             known: READERS.iter().map(|(ending, _)| format!(".{ending}")).collect::<Vec<_>>().join(", "),

@@ -4,7 +4,7 @@ use crate::args::{Common, Order};
 use crate::failure::Failure;
 use crate::output::keep;
 use nusselt::bsp::{BspOptions, SceneBsp};
-use nusselt::io::read_scene;
+use nusselt::io::{ReadOptions, read_scene};
 use nusselt::scene::Scene;
 use std::path::Path;
 use std::time::Instant;
@@ -17,7 +17,7 @@ pub(crate) fn load<'a>(
 ) -> Result<(Scene, f64), Failure> {
     keep(&[path.to_owned()], outputs.clone())?;
     let start = Instant::now();
-    let loaded = read_scene(path).map_err(|error| Failure::Work(error.to_string()))?;
+    let loaded = read_scene(path, &ReadOptions::default()).map_err(|error| Failure::Work(error.to_string()))?;
     let seconds = start.elapsed().as_secs_f64();
     keep(&loaded.files, outputs)?;
     for warning in &loaded.warnings {

@@ -4,7 +4,7 @@ use super::super::error::Faults;
 use super::super::lines::{Line, is_blank, lines};
 use super::super::mtl::{self, Definition};
 use super::super::number::{self, shown};
-use super::super::{Loaded, ReadError, read_regular};
+use super::super::{Loaded, ReadError, ReadOptions, read_regular};
 use crate::scene::{FaceSpec, Material, MaterialId, ObjectId, Scene, SceneBuilder, SceneProblem, Shape};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
@@ -16,12 +16,12 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// If the file cannot be read or used. A material file that is missing is a warning.
-pub fn read(path: &Path) -> Result<Loaded, ReadError> {
+pub fn read(path: &Path, options: &ReadOptions) -> Result<Loaded, ReadError> {
     let bytes = read_regular(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut known: HashSet<PathBuf> = HashSet::new();
     let mut files = vec![path.to_owned()];
-    let mut loaded = parse(&bytes, &path.to_string_lossy(), |name| {
+    let mut loaded = parse(&bytes, &path.to_string_lossy(), options, |name| {
         let path = folder.join(name);
         let path = if path.exists() { path } else { folder.join(name.replace('\\', "/")) };
         // Each file once, whatever it is called.
@@ -41,19 +41,24 @@ pub fn read(path: &Path) -> Result<Loaded, ReadError> {
 /// files it names. Takes any bytes. Of what `load` reads nothing is noted in [`Loaded::files`].
 ///
 /// ```
-/// use nusselt::io::obj;
+/// use nusselt::io::{ReadOptions, obj};
 /// let text = b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\no floor\nf 1 2 3 4\n";
-/// let loaded = obj::parse(text, "floor.obj", |_| Ok(Vec::new()))?;
+/// let loaded = obj::parse(text, "floor.obj", &ReadOptions::default(), |_| Ok(Vec::new()))?;
 /// assert_eq!(loaded.scene.objects(), ["floor"]);
 ///
-/// let error = obj::parse(b"v 0 0 1e400\nf 1 2 3", "bad.obj", |_| Ok(Vec::new())).unwrap_err();
+/// let error = obj::parse(b"v 0 0 1e400\nf 1 2 3", "bad.obj", &ReadOptions::default(), |_| Ok(Vec::new())).unwrap_err();
 /// assert!(error.to_string().starts_with("bad.obj:1: "));
 /// # Ok::<(), nusselt::io::ReadError>(())
 /// ```
 ///
 /// # Errors
 /// [`ReadError::Invalid`] with everything that is wrong.
-pub fn parse(bytes: &[u8], name: &str, load: impl FnMut(&str) -> io::Result<Vec<u8>>) -> Result<Loaded, ReadError> {
+pub fn parse(
+    bytes: &[u8],
+    name: &str,
+    _options: &ReadOptions,
+    load: impl FnMut(&str) -> io::Result<Vec<u8>>,
+) -> Result<Loaded, ReadError> {
     let mut reader = Reader::new(name, load);
     for line in lines(bytes) {
         reader.read_line(&line);
