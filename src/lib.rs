@@ -42,6 +42,7 @@ pub mod contour;
 pub mod exact;
 pub mod integral;
 pub mod io;
+mod parallel;
 pub mod samples;
 pub mod scene;
 #[cfg(feature = "testing")]

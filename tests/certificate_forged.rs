@@ -159,8 +159,9 @@ fn forged_slivers_far_from_their_plane_excuse_nothing() {
     let flat = |a: u32, b: u32, c: u32| SupportingPlane::Points([a, b, c].map(VertexId));
     let level = |value| SupportingPlane::Axis { axis: Axis::Z, value };
     for (plane, rule) in [
-        (flat(4, 4, 4), Rule::Form),
-        (flat(0, 1, 4), Rule::Form),
+        // No plane at all, and one that cuts both squares.
+        (flat(4, 4, 4), Rule::Depth),
+        (flat(0, 1, 7), Rule::Depth),
         (level(2.5), Rule::Depth),
         // The second square is in that plane, but what hides it is far from it.
         (level(2.0), Rule::Depth),

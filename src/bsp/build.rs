@@ -1,12 +1,15 @@
-//! Building the tree, without recursion.
+//! Building the tree: its top first, then the subtrees below, each for itself.
 
-use super::choose::{Candidate, Choice, choose};
-use super::fragment::{Bounds, Fragment, FragmentSide, bounds_of, whole_piece};
+use super::choose::PlaneChoice;
+use super::fragment::{bounds_of, whole_piece};
+use super::grow::{Grower, Item, Job, Rules};
+use super::part::Subtree;
 use super::skeleton::Skeleton;
-use super::split::{Placement, Splitter};
-use super::{BspStats, Node, SceneBsp, Tree, UncutSliver};
-use crate::scene::{PieceId, PlaneId, PolygonId, Scene, Side};
+use super::{BspStats, SceneBsp, Tree};
+use crate::parallel;
+use crate::scene::Scene;
 use std::sync::Arc;
+use std::sync::atomic::AtomicUsize;
 
 /// How a [`SceneBsp`] is built.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -14,10 +17,15 @@ pub struct BspOptions {
     /// A fragment that pokes less than this through a splitting plane, in scene units, is not cut
     /// there. The default is 0: exact order from every viewpoint.
     pub epsilon: f64,
+    /// How splitting planes are chosen.
+    pub planes: PlaneChoice,
     /// Building ends with an error when splits have made more fragments than this: polygons that all
     /// pass through each other make about the square of their number. `None` stands for 64 times the
     /// number of pieces, or 2^20 if that is more (about 0.4 GiB).
     pub max_fragments: Option<usize>,
+    /// Subtrees of at most this many fragments are grown apart from one another, so that threads can share the work; 0 for none. `None` stands
+    /// for 1024, or a 64th of the scene's pieces if that is more. The tree divides space in the same way for any value.
+    pub grain: Option<usize>,
 }
 
 /// Why a [`SceneBsp`] was not built.
@@ -40,25 +48,14 @@ pub enum BspError {
     },
 }
 
-/// A fragment on its way down.
-#[derive(Clone, Debug)]
-struct Item {
-    piece: PieceId,
-    polygon: PolygonId,
-    own: PlaneId,
-    sides: Vec<FragmentSide>,
-    bounds: Bounds,
-}
-
-/// A node to be made: its fragments, its depth and the link that is to lead to it.
-struct Job {
-    items: Vec<Item>,
-    depth: usize,
-    link: Option<(u32, bool)>,
-}
+/// The least number of fragments of subtrees that are grown apart, by default.
+const GRAIN: usize = 1024;
 
 impl SceneBsp {
     /// Builds the tree of a scene: about `n log n` time and memory for `n` polygons.
+    ///
+    /// With the feature `parallel` the subtrees below the top of the tree grow in the threads of the current `rayon` pool. The tree is the
+    /// same for any number of threads, and without the feature.
     ///
     /// # Errors
     /// If epsilon is not a finite number of at least 0, or if there are too many fragments.
@@ -67,142 +64,54 @@ impl SceneBsp {
         if !(epsilon.is_finite() && epsilon >= 0.0) {
             return Err(BspError::BadEpsilon { epsilon });
         }
-        let mut builder = Builder {
-            skeleton: Skeleton::new(scene),
-            splitter: Splitter::default(),
-            nodes: Vec::new(),
-            fragments: Vec::new(),
-            sides: Vec::new(),
-            slivers: Vec::new(),
-            stats: BspStats::default(),
+        let rules = Rules {
             epsilon,
+            planes: options.planes,
             max_fragments: options.max_fragments.unwrap_or((64 * scene.piece_count()).max(1 << 20)),
+            fragments: AtomicUsize::new(scene.piece_count()),
         };
-        builder.run(scene)?;
-        let Builder { skeleton, mut nodes, fragments, sides, slivers, mut stats, .. } = builder;
-        // A child has a higher number than its parent.
-        for k in (0..nodes.len()).rev() {
-            for child in [nodes[k].back, nodes[k].front].into_iter().flatten() {
-                nodes[k].bounds = nodes[k].bounds.union(nodes[child as usize].bounds);
-            }
+        if scene.piece_count() > rules.max_fragments {
+            return Err(BspError::TooManyFragments { limit: rules.max_fragments });
         }
-        stats.nodes = nodes.len();
-        stats.fragments = fragments.len();
-        stats.uncut_slivers = slivers.len();
-        let tree = Tree { scene: scene.clone(), skeleton, nodes, fragments, sides, slivers, stats, epsilon };
-        Ok(Self { tree: Arc::new(tree) })
+        let mut whole = Grower::new(Skeleton::new(scene));
+        let root = Job { items: whole_pieces(scene, &whole.skeleton), depth: 1, link: None };
+        let grain = options.grain.unwrap_or(GRAIN.max(scene.piece_count() / 64));
+        // A scene that is one grain needs no parts.
+        let grain = if root.items.len() <= grain { 0 } else { grain };
+        let jobs = whole.grow(root, grain, &rules)?;
+        let skeleton = &whole.skeleton;
+        let subtrees = parallel::map(jobs, |job| Subtree::grow(skeleton, job, &rules));
+        for subtree in subtrees {
+            subtree?.graft(&mut whole);
+        }
+        Ok(Self { tree: Arc::new(finished(scene, whole, epsilon)) })
     }
 }
 
-struct Builder {
-    skeleton: Skeleton,
-    splitter: Splitter,
-    nodes: Vec<Node>,
-    fragments: Vec<Fragment>,
-    sides: Vec<FragmentSide>,
-    slivers: Vec<UncutSliver>,
-    stats: BspStats,
-    epsilon: f64,
-    max_fragments: usize,
+fn whole_pieces(scene: &Scene, skeleton: &Skeleton) -> Vec<Item> {
+    let items = scene.pieces().map(|piece| {
+        let sides = whole_piece(scene, piece.id());
+        let bounds = bounds_of(skeleton, &sides);
+        Item { piece: piece.id(), polygon: piece.polygon(), own: piece.plane_id(), sides, bounds }
+    });
+    items.collect()
 }
 
-impl Builder {
-    fn run(&mut self, scene: &Scene) -> Result<(), BspError> {
-        let items: Vec<Item> = scene
-            .pieces()
-            .map(|piece| {
-                let sides = whole_piece(scene, piece.id());
-                let bounds = bounds_of(&self.skeleton, &sides);
-                Item { piece: piece.id(), polygon: piece.polygon(), own: piece.plane_id(), sides, bounds }
-            })
-            .collect();
-        let mut jobs = vec![Job { items, depth: 1, link: None }];
-        while let Some(job) = jobs.pop() {
-            if !job.items.is_empty() {
-                self.make_node(job, &mut jobs);
-            }
-            if scene.piece_count() + self.stats.splits > self.max_fragments {
-                return Err(BspError::TooManyFragments { limit: self.max_fragments });
-            }
-        }
-        Ok(())
-    }
-
-    fn make_node(&mut self, Job { items, depth, link }: Job, jobs: &mut Vec<Job>) {
-        let plane = self.choose_plane(&items);
-        let node = self.nodes.len() as u32;
-        if let Some((parent, is_front)) = link {
-            let parent = &mut self.nodes[parent as usize];
-            *(if is_front { &mut parent.front } else { &mut parent.back }) = Some(node);
-        }
-        let mut coplanar = Vec::new();
-        let (mut back, mut front) = (Vec::new(), Vec::new());
-        for item in items {
-            let placement = self.splitter.place(&mut self.skeleton, &item.sides, item.own, plane, self.epsilon);
-            match placement {
-                Placement::Coplanar { exactly } => {
-                    self.note_sliver(&item, plane, exactly, None);
-                    coplanar.push(item);
-                }
-                Placement::Front { exactly } => {
-                    self.note_sliver(&item, plane, exactly, Some(Side::Back));
-                    front.push(item);
-                }
-                Placement::Back { exactly } => {
-                    self.note_sliver(&item, plane, exactly, Some(Side::Front));
-                    back.push(item);
-                }
-                Placement::Spanning { back: b, front: f } => {
-                    self.stats.splits += 1;
-                    for (sides, half) in [(b, &mut back), (f, &mut front)] {
-                        let bounds = bounds_of(&self.skeleton, &sides);
-                        half.push(Item { sides, bounds, ..item });
-                    }
-                }
-            }
-        }
-        let (fragments, bounds) = self.keep(coplanar);
-        self.stats.depth = self.stats.depth.max(depth);
-        if fragments.is_empty() {
-            self.stats.axis_nodes += 1;
-        }
-        self.nodes.push(Node { plane, back: None, front: None, fragments, bounds });
-        for (items, is_front) in [(back, false), (front, true)] {
-            jobs.push(Job { items, depth: depth + 1, link: Some((node, is_front)) });
+fn finished(scene: &Scene, grower: Grower, epsilon: f64) -> Tree {
+    let Grower { skeleton, mut nodes, fragments, sides, slivers, axis_nodes, splits, depth, .. } = grower;
+    // A child has a higher number than its parent.
+    for k in (0..nodes.len()).rev() {
+        for child in [nodes[k].back, nodes[k].front].into_iter().flatten() {
+            nodes[k].bounds = nodes[k].bounds.union(nodes[child as usize].bounds);
         }
     }
-
-    fn choose_plane(&mut self, items: &[Item]) -> PlaneId {
-        if let [only] = items {
-            return only.own;
-        }
-        let candidates: Vec<Candidate<'_>> =
-            items.iter().map(|item| Candidate { bounds: item.bounds, own: item.own, sides: &item.sides }).collect();
-        let skeleton = &self.skeleton;
-        match choose(skeleton, &candidates, &|x| x.is_finite() && skeleton.bits.holds(x)) {
-            Choice::Polygon(plane) => plane,
-            Choice::Axis(axis, value) => self.skeleton.axis_plane(axis, value),
-        }
-    }
-
-    fn note_sliver(&mut self, item: &Item, plane: PlaneId, exactly: bool, beyond: Option<Side>) {
-        if !exactly {
-            let plane = self.skeleton.plane(plane);
-            self.slivers.push(UncutSliver { polygon: item.polygon, piece: item.piece, plane, beyond });
-        }
-    }
-
-    /// Keeps fragments for good, in ascending order of polygons and pieces.
-    fn keep(&mut self, mut items: Vec<Item>) -> (std::ops::Range<u32>, Bounds) {
-        items.sort_by_key(|item| item.piece);
-        let first = self.fragments.len() as u32;
-        let mut bounds = Bounds::EMPTY;
-        for item in items {
-            bounds = bounds.union(item.bounds);
-            let (start, len) = (self.sides.len() as u32, item.sides.len() as u32);
-            self.fragments.push(Fragment { piece: item.piece, polygon: item.polygon, start, len });
-            self.sides.extend(item.sides);
-        }
-        (first..self.fragments.len() as u32, bounds)
-    }
+    let stats = BspStats {
+        nodes: nodes.len(),
+        axis_nodes,
+        depth,
+        splits,
+        fragments: fragments.len(),
+        uncut_slivers: slivers.len(),
+    };
+    Tree { scene: scene.clone(), skeleton, nodes, fragments, sides, slivers, stats, epsilon }
 }

@@ -2,7 +2,8 @@
 
 use super::fragment::{Bounds, FragmentSide};
 use super::skeleton::Skeleton;
-use crate::scene::{Axis, PlaneId};
+use crate::exact::ApproxPlane;
+use crate::scene::{Axis, PlaneId, VertexId};
 
 /// What the choice needs to know of a fragment.
 #[derive(Clone, Copy, Debug)]
@@ -12,38 +13,109 @@ pub(super) struct Candidate<'a> {
     pub(super) sides: &'a [FragmentSide],
 }
 
+/// How the planes that split a [`SceneBsp`](super::SceneBsp) are chosen. Every choice gives a right order; they differ in
+/// splits, depth and time (docs/bsp.md has figures).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum PlaneChoice {
+    /// With more than eight fragments, the axis-aligned plane of least surface-area cost if it cuts few of them and no side gets nearly
+    /// all; otherwise the plane of a polygon that does so; otherwise the best of those and of planes through three vertices, by the
+    /// expected work below.
+    #[default]
+    Balanced,
+    /// Always the axis-aligned plane of least surface-area cost (`MacDonald` and Booth 1990) with more than eight fragments, if one
+    /// separates anything; planes of polygons otherwise.
+    SurfaceArea,
+    /// Planes of polygons only (Fuchs, Kedem and Naylor 1980). A convex mesh becomes a list: time quadratic in its size.
+    Polygons,
+}
+
 /// Up to this many fragments only planes of polygons are tried.
 const FEW: usize = 8;
-/// How many coordinates an axis, and how many polygon planes, are tried.
+/// How many coordinates an axis, and how many fragments for planes of their own, are tried.
 const AXIS_CANDIDATES: usize = 48;
 const PLANE_CANDIDATES: usize = 8;
-/// How many fragments a polygon plane is scored against.
+/// How many fragments a plane that is not axis-aligned is scored against.
 const SCORED: usize = 96;
-/// What a cut costs in units of a fragment that is only visited.
+/// What a cut costs in units of a fragment that is only visited, in the surface-area cost.
 const CUT: f64 = 1.5;
+/// A plane is taken at once if it cuts at most this share of the fragments, and each side gets at most that share.
+const FEW_CUTS: f64 = 1.0 / 16.0;
+const NOT_ALL: f64 = 0.8;
 
 /// A chosen plane.
 pub(super) enum Choice {
     /// The plane of a fragment in the node.
     Polygon(PlaneId),
-    /// An axis-aligned plane through a coordinate of a vertex.
+    /// An axis-aligned plane through a coordinate of a vertex; both sides get fewer fragments than there are.
     Axis(Axis, f64),
+    /// A plane through three vertices that are not on a line. That it divides the fragments is only an estimate.
+    Vertices([VertexId; 3]),
 }
 
-/// Chooses a plane for a node with at least one fragment. Either some fragment lies in the plane,
-/// or both sides get fewer fragments than there are: building always makes progress.
-pub(super) fn choose(skeleton: &Skeleton, items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Choice {
-    if items.len() > FEW
-        && let Some((axis, value)) = best_axis_plane(items, grid)
+/// How a plane divides fragments.
+#[derive(Clone, Copy, Debug, Default)]
+struct Tally {
+    back: f64,
+    front: f64,
+    cut: f64,
+}
+
+impl Tally {
+    /// The expected work below: every fragment goes down a tree of logarithmic depth, and a cut makes one more.
+    fn work(self) -> f64 {
+        let side = |n: f64| n * (n + 1.0).log2();
+        side(self.back + self.cut) + side(self.front + self.cut)
+    }
+
+    /// True if few fragments are cut, and neither side gets nearly all.
+    fn is_clean(self, total: usize) -> bool {
+        let total = total as f64;
+        self.cut <= FEW_CUTS * total && self.back.max(self.front) + self.cut <= NOT_ALL * total
+    }
+}
+
+/// Chooses a plane for a node with at least one fragment.
+pub(super) fn choose(
+    skeleton: &Skeleton,
+    items: &[Candidate<'_>],
+    how: PlaneChoice,
+    grid: &dyn Fn(f64) -> bool,
+) -> Choice {
+    if let [only] = items {
+        return Choice::Polygon(only.own);
+    }
+    let axis = match how {
+        PlaneChoice::Polygons => None,
+        _ if items.len() <= FEW => None,
+        PlaneChoice::Balanced | PlaneChoice::SurfaceArea => best_axis_plane(items, grid),
+    };
+    if let Some((tally, axis, value)) = axis
+        && (how == PlaneChoice::SurfaceArea || tally.is_clean(items.len()))
     {
         return Choice::Axis(axis, value);
     }
-    Choice::Polygon(best_polygon_plane(skeleton, items))
+    let (polygons, plane) = best_polygon_plane(skeleton, items);
+    let (mut least, mut choice) = (polygons.work(), Choice::Polygon(plane));
+    if how != PlaneChoice::Balanced || polygons.is_clean(items.len()) {
+        return choice;
+    }
+    if let Some((tally, axis, value)) = axis
+        && tally.work() < least
+    {
+        (least, choice) = (tally.work(), Choice::Axis(axis, value));
+    }
+    // Where an axis-aligned plane cuts much and a polygon's leaves nearly all on one side.
+    if let Some((work, vertices)) = best_vertex_plane(skeleton, items)
+        && work < least
+    {
+        choice = Choice::Vertices(vertices);
+    }
+    choice
 }
 
 /// The surface-area cost (`MacDonald` and Booth 1990) of the best axis-aligned plane through a bound of
 /// some fragment's box, if it separates anything.
-fn best_axis_plane(items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Option<(Axis, f64)> {
+fn best_axis_plane(items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Option<(Tally, Axis, f64)> {
     let whole = items.iter().fold(Bounds::EMPTY, |b, item| b.union(item.bounds));
     let total = items.len();
     // Areas relative to the node's size: right at any scale.
@@ -51,7 +123,7 @@ fn best_axis_plane(items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Optio
     if unit <= 0.0 || !unit.is_finite() {
         return None;
     }
-    let mut best: Option<(f64, Axis, f64)> = None;
+    let mut best: Option<(f64, Tally, Axis, f64)> = None;
     let mut counts = Vec::new();
     for axis in Axis::ALL {
         let k = axis as usize;
@@ -96,43 +168,70 @@ fn best_axis_plane(items: &[Candidate<'_>], grid: &dyn Fn(f64) -> bool) -> Optio
                 + above.half_area(unit) * (front + spanning) as f64
                 + CUT * whole.half_area(unit) * spanning as f64;
             if cost.is_finite() && best.is_none_or(|(least, ..)| cost < least) {
-                best = Some((cost, axis, c));
+                let tally = Tally { back: back as f64, front: front as f64, cut: spanning as f64 };
+                best = Some((cost, tally, axis, c));
             }
         }
     }
-    best.map(|(_, axis, value)| (axis, value))
+    best.map(|(_, tally, axis, value)| (tally, axis, value))
 }
 
-/// The polygon plane with the least cuts and the best balance among a few.
-fn best_polygon_plane(skeleton: &Skeleton, items: &[Candidate<'_>]) -> PlaneId {
-    let stride = items.len().div_ceil(PLANE_CANDIDATES);
-    let scored = items.len().div_ceil(SCORED);
-    let mut best = (f64::INFINITY, items[0].own);
-    for candidate in items.iter().step_by(stride) {
-        let plane = candidate.own;
-        let (mut front, mut back, mut cut) = (0usize, 0usize, 0usize);
-        for item in items.iter().step_by(scored) {
-            if item.own == plane {
-                continue;
-            }
-            let tolerance = 1e-9 * item.bounds.extent();
-            let (mut low, mut high) = (0.0f64, 0.0f64);
-            for side in item.sides {
-                let h = skeleton.rounded_height(plane, side.point);
-                low = low.min(h);
-                high = high.max(h);
-            }
-            match (low < -tolerance, high > tolerance) {
-                (true, true) => cut += 1,
-                (true, false) => back += 1,
-                (false, true) => front += 1,
-                (false, false) => {}
-            }
+/// How a plane divides the fragments, estimated from rounded heights of a sample. Those in the plane `own` are in it.
+fn tally(skeleton: &Skeleton, items: &[Candidate<'_>], plane: &ApproxPlane, own: Option<PlaneId>) -> Tally {
+    let stride = items.len().div_ceil(SCORED);
+    let weight = items.len() as f64 / items.len().div_ceil(stride) as f64;
+    let mut tally = Tally::default();
+    for item in items.iter().step_by(stride).filter(|item| Some(item.own) != own) {
+        let tolerance = 1e-9 * item.bounds.extent();
+        let (mut low, mut high) = (0.0f64, 0.0f64);
+        for side in item.sides {
+            let h = plane.rounded_height(skeleton.approx_point(side.point).position);
+            low = low.min(h);
+            high = high.max(h);
         }
-        let score = front.abs_diff(back) as f64 + 4.0 * cut as f64;
-        if score < best.0 {
-            best = (score, plane);
+        match (low < -tolerance, high > tolerance) {
+            (true, true) => tally.cut += weight,
+            (true, false) => tally.back += weight,
+            (false, true) => tally.front += weight,
+            (false, false) => {}
         }
     }
-    best.1
+    tally
+}
+
+/// The best plane among those of a few fragments.
+fn best_polygon_plane(skeleton: &Skeleton, items: &[Candidate<'_>]) -> (Tally, PlaneId) {
+    let planes = items.iter().step_by(items.len().div_ceil(PLANE_CANDIDATES)).map(|candidate| candidate.own);
+    let tallies = planes.map(|plane| (tally(skeleton, items, skeleton.approx_plane(plane), Some(plane)), plane));
+    let best = tallies.min_by(|(a, _), (b, _)| a.work().total_cmp(&b.work()));
+    best.unwrap_or((Tally::default(), items[0].own))
+}
+
+/// The best plane among some through an edge of one fragment and a vertex of another one, with the work it leaves. Around the tip of a
+/// cone, or along the meridians of a ball, such a plane cuts nothing and halves the rest.
+fn best_vertex_plane(skeleton: &Skeleton, items: &[Candidate<'_>]) -> Option<(f64, [VertexId; 3])> {
+    let total = items.len();
+    let mut best: Option<(f64, [VertexId; 3])> = None;
+    let (mut here, mut there) = (Vec::new(), Vec::new());
+    let collect = |item: &Candidate<'_>, vertices: &mut Vec<VertexId>| {
+        vertices.clear();
+        vertices.extend(item.sides.iter().filter_map(|side| skeleton.scene_vertex(side.point)));
+    };
+    for k in (0..total).step_by(total.div_ceil(PLANE_CANDIDATES)) {
+        collect(&items[k], &mut here);
+        for far in [total / 2, total / 3] {
+            collect(&items[(k + far) % total], &mut there);
+            for (&a, &b) in here.iter().zip(here.iter().cycle().skip(1)) {
+                let Some(&c) = there.iter().find(|&&c| c != a && c != b) else { continue };
+                let mut vertices = [a, b, c];
+                vertices.sort_unstable();
+                let Some(plane) = skeleton.plane_through(vertices) else { continue };
+                let work = tally(skeleton, items, &plane, None).work();
+                if best.is_none_or(|(least, _)| work < least) {
+                    best = Some((work, vertices));
+                }
+            }
+        }
+    }
+    best
 }

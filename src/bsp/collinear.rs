@@ -54,6 +54,11 @@ impl Collinear {
         lines
     }
 
+    /// For edges of which it is known which stands for which.
+    pub(super) fn known(parents: Vec<(u32, bool)>) -> Self {
+        Self { parents }
+    }
+
     /// The edge that stands for the line of `edge`, and whether it runs the same way.
     pub(super) fn representative(&self, edge: u32) -> (u32, bool) {
         self.parents[edge as usize]

@@ -9,12 +9,15 @@ mod build;
 mod choose;
 mod collinear;
 mod fragment;
+mod grow;
+mod part;
 mod skeleton;
 mod split;
 mod stats;
 mod traverse;
 
 pub use build::{BspError, BspOptions};
+pub use choose::PlaneChoice;
 pub use fragment::FragmentRef;
 pub use stats::BspStats;
 pub use traverse::{BackToFront, FrontToBack};

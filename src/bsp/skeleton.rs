@@ -49,6 +49,8 @@ pub(crate) struct Skeleton {
     planes: Vec<SupportingPlane>,
     approx_planes: Vec<ApproxPlane>,
     axis_planes: FxHashMap<(Axis, u64), PlaneId>,
+    /// Planes that were chosen, through vertices in ascending order.
+    vertex_planes: FxHashMap<[VertexId; 3], PlaneId>,
     edges: Vec<[VertexId; 2]>,
     collinear: Collinear,
     /// The lines through each vertex, one vertex after the other, and where each begins.
@@ -81,6 +83,7 @@ impl Skeleton {
             planes: Vec::new(),
             approx_planes: Vec::new(),
             axis_planes: FxHashMap::default(),
+            vertex_planes: FxHashMap::default(),
             edges: scene.edges().to_vec(),
             creases: Vec::new(),
             crease_ids: FxHashMap::default(),
@@ -96,14 +99,48 @@ impl Skeleton {
         skeleton
     }
 
+    /// A skeleton without planes for a part of the scene: `vertices` and `edges` by numbers of their own, with the edges that stand
+    /// for others.
+    pub(super) fn part(&self, vertices: Vec<DVec3>, (edges, lines): (Vec<[VertexId; 2]>, Vec<(u32, bool)>)) -> Self {
+        Self {
+            bits: self.bits,
+            collinear: Collinear::known(lines),
+            vertex_lines: Vec::new(),
+            vertex_lines_start: vec![0; vertices.len() + 1],
+            planes: Vec::new(),
+            approx_planes: Vec::new(),
+            axis_planes: FxHashMap::default(),
+            vertex_planes: FxHashMap::default(),
+            edges,
+            creases: Vec::new(),
+            crease_ids: FxHashMap::default(),
+            constructed: Vec::new(),
+            constructed_ids: FxHashMap::default(),
+            approx_points: vertices.iter().map(|&position| ApproxPoint::exact(position)).collect(),
+            vertices,
+            incident: Vec::new(),
+            frame: self.frame,
+        }
+    }
+
     fn push_plane(&mut self, plane: SupportingPlane) -> PlaneId {
+        let approx = ApproxPlane::refined(&self.resolved(plane));
+        self.add_plane(plane, approx)
+    }
+
+    /// Adds a plane of which the approximation is known.
+    pub(super) fn add_plane(&mut self, plane: SupportingPlane, approx: ApproxPlane) -> PlaneId {
         let id = PlaneId(self.planes.len() as u32);
         self.planes.push(plane);
         if let SupportingPlane::Axis { axis, value } = plane {
             self.axis_planes.insert((axis, value.to_bits()), id);
         }
-        self.approx_planes.push(ApproxPlane::refined(&self.resolved_plane(id)));
+        self.approx_planes.push(approx);
         id
+    }
+
+    pub(super) fn plane_count(&self) -> usize {
+        self.planes.len()
     }
 
     /// The axis-aligned plane, made if there is none yet. `value` must be a coordinate of a vertex,
@@ -113,13 +150,42 @@ impl Skeleton {
         known.unwrap_or_else(|| self.push_plane(SupportingPlane::Axis { axis, value }))
     }
 
+    /// A plane through three vertices; `None` if they are too nearly on a line to tell.
+    pub(super) fn plane_through(&self, vertices: [VertexId; 3]) -> Option<ApproxPlane> {
+        let plane = ApproxPlane::new(&Plane::Points(vertices.map(|v| self.vertex(v))));
+        (!plane.normal.is_poor()).then_some(plane)
+    }
+
+    /// The plane through three vertices that are not on a line, in ascending order; made if it was not chosen before.
+    pub(super) fn vertex_plane(&mut self, vertices: [VertexId; 3]) -> PlaneId {
+        let known = self.vertex_planes.get(&vertices).copied();
+        known.unwrap_or_else(|| {
+            let id = self.push_plane(SupportingPlane::Points(vertices));
+            self.vertex_planes.insert(vertices, id);
+            id
+        })
+    }
+
+    pub(super) fn approx_plane(&self, id: PlaneId) -> &ApproxPlane {
+        &self.approx_planes[id.index()]
+    }
+
+    /// The vertex of the scene that a point is, if it is one.
+    pub(super) fn scene_vertex(&self, point: PointId) -> Option<VertexId> {
+        ((point.0 as usize) < self.vertices.len()).then_some(VertexId(point.0))
+    }
+
     pub(crate) fn plane(&self, id: PlaneId) -> SupportingPlane {
         self.planes[id.index()]
     }
 
     /// The plane by its coordinates.
     pub(crate) fn resolved_plane(&self, id: PlaneId) -> Plane {
-        match self.plane(id) {
+        self.resolved(self.plane(id))
+    }
+
+    fn resolved(&self, plane: SupportingPlane) -> Plane {
+        match plane {
             SupportingPlane::Axis { axis, value } => Plane::Axis { axis: axis as usize, value },
             SupportingPlane::Points(points) => Plane::Points(points.map(|v| self.vertex(v))),
         }
@@ -206,7 +272,7 @@ impl Skeleton {
         }
     }
 
-    fn note_incidence(&mut self, point: PointId, line: LineId) {
+    pub(super) fn note_incidence(&mut self, point: PointId, line: LineId) {
         let Some(k) = (point.0 as usize).checked_sub(self.vertices.len()) else { return };
         if let Some(free) = self.incident[k].iter_mut().find(|l| **l == NO_LINE || **l == line.0) {
             *free = line.0;
@@ -247,7 +313,6 @@ impl Skeleton {
         [from, to]: [PointId; 2],
         arena: &mut Arena,
     ) -> PointId {
-        let id = PointId(self.approx_points.len() as u32);
         // On an edge of the scene interpolate between its exact ends.
         let [from, to] = match def {
             PointDef::EdgePlane([a, b], _) => [a, b].map(|v| self.approx_points[v.index()]),
@@ -273,11 +338,29 @@ impl Skeleton {
                 approx.err[axis as usize] = 0.0;
             }
         }
+        self.add_constructed(def, approx)
+    }
+
+    /// Adds a constructed point of which the approximation is known.
+    pub(super) fn add_constructed(&mut self, def: PointDef, approx: ApproxPoint) -> PointId {
+        let id = PointId(self.approx_points.len() as u32);
         self.approx_points.push(approx);
         self.constructed.push(def);
         self.constructed_ids.insert(def, id);
         self.incident.push([NO_LINE; 4]);
         id
+    }
+
+    /// The constructed point of that definition; if there is none yet, it is added with this approximation.
+    pub(super) fn constructed(&mut self, def: PointDef, approx: ApproxPoint) -> PointId {
+        let known = self.constructed_ids.get(&def).copied();
+        known.unwrap_or_else(|| self.add_constructed(def, approx))
+    }
+
+    /// The lines that a constructed point is known to lie on.
+    pub(super) fn lines_through(&self, point: PointId) -> impl Iterator<Item = LineId> {
+        let lines = (point.0 as usize).checked_sub(self.vertices.len()).map(|k| self.incident[k]);
+        lines.into_iter().flatten().filter(|&line| line != NO_LINE).map(LineId)
     }
 
     /// The height of a point over a plane in scene units, rounded; for choices that need not be exact.

@@ -7,9 +7,8 @@ use super::kernel_signs::KernelSigns;
 use super::rational_signs::RationalSigns;
 use super::signs::Signs;
 use crate::exact::Sign;
-use crate::scene::{PieceId, Scene, Splitter, SupportingPlane, VertexId};
+use crate::scene::{PieceId, Scene, Splitter, SupportingPlane};
 use glam::DVec3;
-use rustc_hash::FxHashSet;
 
 /// Where the signs of a proof come from.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -113,15 +112,7 @@ impl Evidence {
         if let Some(k) = self.splitters.iter().position(|splitter| !has_splitter(splitter)) {
             return malformed(format!("splitter {k}"), "a vertex does not exist, or a number is not finite");
         }
-        // Nothing but the planes of the scene and axis-aligned ones can have left a sliver. Three vertices in line
-        // would be a plane from which nothing is far.
-        let planes: FxHashSet<[VertexId; 3]> = match self.slivers.as_slice() {
-            [] => FxHashSet::default(),
-            _ => scene.planes().iter().filter_map(SupportingPlane::points).collect(),
-        };
-        let is_sliver = |s: &super::EvidenceSliver| {
-            has_piece(s.piece) && has_plane(&s.plane) && s.plane.points().is_none_or(|p| planes.contains(&p))
-        };
+        let is_sliver = |s: &super::EvidenceSliver| has_piece(s.piece) && has_plane(&s.plane);
         if let Some(k) = self.slivers.iter().position(|sliver| !is_sliver(sliver)) {
             return malformed(format!("sliver {k}"), "its piece or its plane does not exist");
         }

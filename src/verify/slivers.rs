@@ -39,6 +39,10 @@ impl Disorder {
     /// Leaves of `parts` what a sliver of the first or the second of the two pieces does not excuse.
     pub(super) fn excuse(&self, parts: &mut Vec<Part>, whose: usize, sliver: &EvidenceSliver, plane: &Plane) {
         let plane = RationalPlane::new(plane);
+        // Three vertices on a line are no plane to be near to.
+        if plane.normal.iter().all(Zero::is_zero) {
+            return;
+        }
         let reach = &self.limit * &length_at_least(&plane.normal);
         let within = |piece: &RationalPlane| {
             [self.half(piece, &plane, &-&reach, Sign::Positive), self.half(piece, &plane, &reach, Sign::Negative)]

@@ -1,7 +1,13 @@
 //! The 3D BSP: fragments tile their pieces, and come front to back.
 
 use super::{cases, hold, mode};
-use nusselt::testing::{Case, Mode, case, check_bsp, check_fragments, check_mirror, check_order, gallery};
+use glam::DVec3;
+use nusselt::bsp::{BspOptions, FragmentRef, SceneBsp};
+use nusselt::contour::{Domain, Viewpoint};
+use nusselt::samples::{Kind, generate};
+use nusselt::testing::{
+    Case, Mode, case, check_bsp, check_fragments, check_mirror, check_order, check_same_bits, gallery,
+};
 use proptest::prelude::*;
 
 proptest! {
@@ -35,6 +41,52 @@ proptest! {
         // On a grid of unit 1 these leave much uncut.
         let bsp = hold(Case { epsilon: 2f64.powi(1 - exponent), ..case.clone() }.bsp())?;
         hold(check_order(&bsp, case.eye))?;
+    }
+}
+
+/// A tree by all that can be asked of it: its figures, and its fragments front to back by exact corners.
+fn described(bsp: &SceneBsp, eye: DVec3) -> String {
+    let fragment = |f: FragmentRef<'_>| format!("{} {:?}", f.piece(), f.exact_corners().collect::<Vec<_>>());
+    let order: Vec<_> = bsp.front_to_back(eye).map(fragment).collect();
+    format!("{:?}\n{:?}\n{}", bsp.stats(), bsp.uncut_slivers().len(), order.join("\n"))
+}
+
+proptest! {
+    #![proptest_config(cases(300))]
+
+    #[test]
+    fn subtrees_that_grow_apart_make_the_same_tree(
+        case in mode().prop_flat_map(case), grain in 1usize..6, coarse in any::<bool>(),
+    ) {
+        let scene = hold(case.scene())?;
+        let epsilon = if coarse { scene.diagonal() * 1e-2 } else { 0.0 };
+        let build = |grain| SceneBsp::build(&scene, &BspOptions { epsilon, grain: Some(grain), ..BspOptions::default() });
+        let (whole, apart) = (hold(build(0))?, hold(build(grain))?);
+        prop_assert_eq!(described(&whole, case.eye), described(&apart, case.eye));
+        hold(check_fragments(&apart))?;
+        hold(check_order(&apart, case.eye))?;
+        if hold(Case { epsilon, ..case.clone() }.view(&apart))?.certify().is_err() {
+            prop_assert!(false, "a view of the tree is not proved");
+        }
+    }
+}
+
+#[test]
+fn the_tree_is_the_same_for_any_number_of_threads() {
+    let scene = generate(Kind::Room, 3_000, 1).unwrap().to_builder().build().unwrap();
+    let options = BspOptions { grain: Some(100), ..BspOptions::default() };
+    let eye = DVec3::new(1.0, 1.5, 1.2);
+    let view = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let bsp = pool.install(|| SceneBsp::build(&scene, &options)).unwrap();
+        let corners: Vec<_> = bsp.fragments().flat_map(|f| f.corners().collect::<Vec<_>>()).collect();
+        (described(&bsp, eye), corners, bsp.view(&Viewpoint::free(eye), &Domain::Sphere).unwrap())
+    };
+    let (order, corners, image) = view(1);
+    for threads in [2, 3, 8] {
+        let (other_order, other_corners, other) = view(threads);
+        assert!(order == other_order && corners == other_corners, "{threads} threads make another tree");
+        check_same_bits(&image, &other).unwrap();
     }
 }
 

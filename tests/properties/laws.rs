@@ -6,7 +6,7 @@
 
 use super::{cases, grid_directions, hold};
 use glam::DVec3;
-use nusselt::bsp::SceneBsp;
+use nusselt::bsp::{BspOptions, PlaneChoice, SceneBsp};
 use nusselt::contour::{ContourImage, ViewOptions};
 use nusselt::exact::orient3d;
 use nusselt::scene::{PieceRef, PolygonId, Side};
@@ -189,6 +189,13 @@ proptest! {
         agree(&hold(case.view(&bsp))?, &other, &grid_directions(seed))?;
     }
 
+    /// Other splitting planes cut other fragments, which look the same.
+    #[test]
+    fn the_choice_of_splitting_planes_changes_nothing_seen(case in free_case(), polygons in any::<bool>(), seed in any::<u64>()) {
+        let planes = if polygons { PlaneChoice::Polygons } else { PlaneChoice::SurfaceArea };
+        let other = hold(SceneBsp::build(&hold(case.scene())?, &BspOptions { planes, ..BspOptions::default() }))?;
+        agree(&hold(case.image())?, &hold(case.view(&other))?, &grid_directions(seed))?;
+    }
 }
 
 proptest! {

@@ -1,5 +1,6 @@
 //! Arguments that several commands take.
 
+use crate::failure::Failure;
 use glam::DVec3;
 use nusselt::scene::{PolygonId, Side};
 use nusselt::verify::Arithmetic;
@@ -20,6 +21,13 @@ pub(crate) struct Common {
 }
 
 impl Common {
+    /// Starts the threads that share the work.
+    pub(crate) fn start_threads(&self) -> Result<(), Failure> {
+        let count = self.threads.map_or(0, NonZeroUsize::get);
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build_global();
+        pool.map_err(|error| Failure::Work(format!("cannot start threads: {error}; try fewer with --threads")))
+    }
+
     /// Prints a warning to stderr.
     pub(crate) fn warn(&self, warning: &str) {
         use std::io::Write;
@@ -39,7 +47,8 @@ pub(crate) struct Order {
 }
 
 fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
-    text.parse().map_err(|_| "it takes a whole number of at least 1".to_owned())
+    let count = text.parse().ok().filter(|&count: &NonZeroUsize| count.get() <= 1024);
+    count.ok_or_else(|| "it takes a whole number from 1 to 1024".to_owned())
 }
 
 fn parse_number(text: &str) -> Result<f64, String> {

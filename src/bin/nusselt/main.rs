@@ -33,14 +33,20 @@ enum Command {
     Scene(scene::Scene),
 }
 
+impl Command {
+    fn run(&self, common: &args::Common) -> Result<(), Failure> {
+        match self {
+            Self::Info(command) => command.run(common),
+            Self::Contour(command) => command.run(common),
+            Self::Verify(command) => command.run(common),
+            Self::Scene(command) => command.run(common),
+        }
+    }
+}
+
 fn main() -> ExitCode {
     let outcome = match Program::try_parse() {
-        Ok(program) => match program.command {
-            Command::Info(command) => command.run(&program.common),
-            Command::Contour(command) => command.run(&program.common),
-            Command::Verify(command) => command.run(&program.common),
-            Command::Scene(command) => command.run(&program.common),
-        },
+        Ok(program) => program.common.start_threads().and_then(|()| program.command.run(&program.common)),
         Err(error) => failure::of_clap(&error),
     };
     match outcome {

@@ -14,6 +14,7 @@ pub(crate) struct Timing {
     /// Around the proof, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) certify_ms: Option<f64>,
+    /// How many threads there were; views are made one after the other.
     pub(crate) threads: usize,
 }
 
@@ -23,7 +24,15 @@ impl Timing {
         // Not with sum, which is -0 for none.
         let mean = view_ms.iter().fold(0.0, |sum, ms| sum + ms) / view_ms.len().max(1) as f64;
         let max = view_ms.iter().copied().fold(0.0, f64::max);
-        Self { load_s, bsp_s, views: view_ms.len(), view_ms_mean: mean, view_ms_max: max, certify_ms: None, threads: 1 }
+        Self {
+            load_s,
+            bsp_s,
+            views: view_ms.len(),
+            view_ms_mean: mean,
+            view_ms_max: max,
+            certify_ms: None,
+            threads: rayon::current_num_threads(),
+        }
     }
 }
 
