@@ -38,9 +38,12 @@ const PLANE_CANDIDATES: usize = 8;
 const SCORED: usize = 96;
 /// What a cut costs in units of a fragment that is only visited, in the surface-area cost.
 const CUT: f64 = 1.5;
-/// A plane is taken at once if it cuts at most this share of the fragments, and each side gets at most that share.
+/// A plane is clean if it cuts at most this share of the fragments, and no side gets more than a certain share.
 const FEW_CUTS: f64 = 1.0 / 16.0;
-const NOT_ALL: f64 = 0.8;
+/// That share for axis-aligned planes, which may cut off empty space ...
+const NOT_ALL: f64 = 0.95;
+/// ... and for planes of polygons.
+const BALANCED: f64 = 0.8;
 
 /// A chosen plane.
 pub(super) enum Choice {
@@ -67,10 +70,10 @@ impl Tally {
         side(self.back + self.cut) + side(self.front + self.cut)
     }
 
-    /// True if few fragments are cut, and neither side gets nearly all.
-    fn is_clean(self, total: usize) -> bool {
+    /// True if few fragments are cut, and no side gets more than `share` of them.
+    fn is_clean(self, total: usize, share: f64) -> bool {
         let total = total as f64;
-        self.cut <= FEW_CUTS * total && self.back.max(self.front) + self.cut <= NOT_ALL * total
+        self.cut <= FEW_CUTS * total && self.back.max(self.front) + self.cut <= share * total
     }
 }
 
@@ -90,13 +93,13 @@ pub(super) fn choose(
         PlaneChoice::Balanced | PlaneChoice::SurfaceArea => best_axis_plane(items, grid),
     };
     if let Some((tally, axis, value)) = axis
-        && (how == PlaneChoice::SurfaceArea || tally.is_clean(items.len()))
+        && (how == PlaneChoice::SurfaceArea || tally.is_clean(items.len(), NOT_ALL))
     {
         return Choice::Axis(axis, value);
     }
     let (polygons, plane) = best_polygon_plane(skeleton, items);
     let (mut least, mut choice) = (polygons.work(), Choice::Polygon(plane));
-    if how != PlaneChoice::Balanced || polygons.is_clean(items.len()) {
+    if how != PlaneChoice::Balanced || polygons.is_clean(items.len(), BALANCED) {
         return choice;
     }
     if let Some((tally, axis, value)) = axis
