@@ -16,13 +16,11 @@ pub struct GeoRegion {
     pub shape: MultiPolygon<f64>,
 }
 
-/// How far the polylines of [`ContourImage::to_geo`] leave the true curves, at most about, in units of the picture.
-const TOLERANCE: f64 = 1e-5;
-
 impl ContourImage {
     /// The visible regions in a projection as polygons with holes, one multi-polygon for every side of a polygon that is in the
     /// picture and one for the background, which comes last. Coordinates are those of [`Projector`]: for the hemisphere the disc has the radius
-    /// 1, panoramas are in radians. Curves are flattened to within 1e-5: see [`Projector::regions`].
+    /// 1, panoramas are in radians. Curves are flattened to within [`Projector::TOLERANCE`]: see
+    /// [`Projector::regions`].
     ///
     /// ```
     /// # use nusselt::bsp::{BspOptions, SceneBsp};
@@ -41,7 +39,7 @@ impl ContourImage {
     /// # Errors
     /// As [`Projector::of_image`]: if the image is of the whole sphere and the projection is [`Projection::Nusselt`].
     pub fn to_geo(&self, projection: Projection) -> Result<Vec<GeoRegion>, ProjectionError> {
-        Ok(Projector::of_image(self, projection)?.to_geo(self, TOLERANCE))
+        Ok(Projector::of_image(self, projection)?.to_geo(self, Projector::TOLERANCE))
     }
 }
 

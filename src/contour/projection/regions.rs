@@ -41,6 +41,9 @@ fn double_area(ring: &[DVec2]) -> f64 {
 }
 
 impl Projector {
+    /// A fine tolerance for [`Projector::regions`]: a full circle of radius 1 gets some 1,300 points.
+    pub const TOLERANCE: f64 = 1e-5;
+
     /// The visible regions of the image in the picture, cut to what the projection shows: by polygon and side,
     /// background last, then by their lowest cells. The projector must be for the domain of the image, as that of [`Projector::of_image`]
     /// is.
@@ -62,7 +65,8 @@ impl Projector {
         let inner: Vec<Vec<DVec2>> = (0..outlines.chains.len() as u32).map(|chain| flattener.inner(chain)).collect();
         let regions = components.iter().filter_map(|component| {
             let rings = component.loops.iter().map(|runs| flattener.ring(runs, &inner));
-            let mut rings: Vec<_> = rings.filter(|ring| ring.len() > 2).map(|ring| (double_area(&ring), ring)).collect();
+            let mut rings: Vec<_> =
+                rings.filter(|ring| ring.len() > 2).map(|ring| (double_area(&ring), ring)).collect();
             // The only ring that runs around its inside the other way.
             let outer = (0..rings.len()).max_by(|&a, &b| rings[a].0.total_cmp(&rings[b].0).then(b.cmp(&a)))?;
             let (area, mut exterior) = rings.remove(outer);
@@ -107,9 +111,13 @@ impl Projector {
                 let slope = (PI - STEREOGRAPHIC_REACH).tan();
                 for side in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y] {
                     let circle = mosaic.push_circle(self.in_world(side + DVec3::Z * slope));
-                    mosaic.cut(circle, |face| face.part == Part::Left, |face, side| {
-                        face.part = if side.is_positive() { Part::Front } else { Part::Left };
-                    });
+                    mosaic.cut(
+                        circle,
+                        |face| face.part == Part::Left,
+                        |face, side| {
+                            face.part = if side.is_positive() { Part::Front } else { Part::Left };
+                        },
+                    );
                 }
                 for face in &mut mosaic.faces {
                     face.label = face.label.filter(|_| face.part == Part::Front);
@@ -119,9 +127,13 @@ impl Projector {
             Projection::Equirectangular => {
                 let [along, across] = [DVec3::X, DVec3::Z].map(|n| mosaic.push_circle(self.in_world(n)));
                 let behind = |face: &Face| face.part != Part::Front;
-                mosaic.cut(across, |_| true, |face, side| {
-                    face.part = if side.is_positive() { Part::Front } else { Part::Right };
-                });
+                mosaic.cut(
+                    across,
+                    |_| true,
+                    |face, side| {
+                        face.part = if side.is_positive() { Part::Front } else { Part::Right };
+                    },
+                );
                 mosaic.cut(along, behind, |face, side| {
                     face.part = if side.is_positive() { Part::Right } else { Part::Left };
                 });

@@ -181,7 +181,8 @@ impl Arrangement {
             return Half { stretch: if forward { end } else { self.previous(end) }, forward };
         }
         let [first, last] = [0, 1].map(|k| self.face_sides[face as usize + k]);
-        let FaceSide { forward, ends: [from, _], .. } = self.sides[(if side + 1 == last { first } else { side + 1 }) as usize];
+        let FaceSide { forward, ends: [from, _], .. } =
+            self.sides[(if side + 1 == last { first } else { side + 1 }) as usize];
         Half { stretch: if forward { from } else { self.previous(from) }, forward }
     }
 

@@ -137,7 +137,10 @@ impl ContourImage {
             match sides.last_mut() {
                 Some(side) if outlines.go_on(before(k), run) => side.length += length,
                 _ => sides.push(RegionSide {
-                    splitter: outlines.mosaic.directions.splitter(tree, outlines.circles.name(outlines.circle(run.chain))),
+                    splitter: outlines
+                        .mosaic
+                        .directions
+                        .splitter(tree, outlines.circles.name(outlines.circle(run.chain))),
                     inside: inside(run),
                     turn: outlines.turn(before(k), run),
                     from: outlines.unit(outlines.start(run)),

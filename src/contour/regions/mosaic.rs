@@ -93,12 +93,7 @@ impl<'a> Mosaic<'a> {
 
     /// Cuts faces at a great circle, exactly; `mark` is told on which side each of the selected ones, or each part of
     /// them, lies.
-    pub(crate) fn cut(
-        &mut self,
-        circle: CircleId,
-        selected: impl Fn(&Face) -> bool,
-        mark: impl Fn(&mut Face, Sign),
-    ) {
+    pub(crate) fn cut(&mut self, circle: CircleId, selected: impl Fn(&Face) -> bool, mark: impl Fn(&mut Face, Sign)) {
         let [mut negative, mut positive] = [Vec::new(), Vec::new()];
         for k in 0..self.faces.len() {
             let face = self.faces[k];

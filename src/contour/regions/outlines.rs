@@ -90,7 +90,8 @@ impl<'a> Outlines<'a> {
             component.faces.iter().for_each(|&face| component_of[face as usize] = Some(k));
         }
         let mut done = vec![[false; 2]; self.chains.len()];
-        for start in (0..self.chains.len() as u32).flat_map(|chain| [true, false].map(|forward| Run { chain, forward })) {
+        for start in (0..self.chains.len() as u32).flat_map(|chain| [true, false].map(|forward| Run { chain, forward }))
+        {
             let component = self.face_beside(start).and_then(|face| component_of[face as usize]);
             let Some(component) = component else { continue };
             let mut runs = Vec::new();
@@ -220,12 +221,7 @@ pub(crate) fn inside(run: Run) -> Sign {
     if run.forward { Sign::Positive } else { Sign::Negative }
 }
 
-fn spots(
-    mosaic: &mut Mosaic<'_>,
-    circles: &GreatCircles,
-    arrangement: &Arrangement,
-    seam: Option<Seam>,
-) -> Vec<Spot> {
+fn spots(mosaic: &mut Mosaic<'_>, circles: &GreatCircles, arrangement: &Arrangement, seam: Option<Seam>) -> Vec<Spot> {
     let mut spots = vec![Spot::Plain; arrangement.vertex_count()];
     let Some(Seam { along, across }) = seam else { return spots };
     let Some(circle) = circles.number(along) else { return spots };

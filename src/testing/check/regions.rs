@@ -146,7 +146,8 @@ fn check_area(image: &ContourImage, exact: &Exact<'_>, region: &VisibleRegion) -
     let mut area = 4.0 * PI;
     let mut sides = 0;
     for boundary in region.loops() {
-        let normals: Vec<DVec3> = boundary.sides().iter().map(|s| rounded(&exact.inward(s.splitter, s.inside))).collect();
+        let normals: Vec<DVec3> =
+            boundary.sides().iter().map(|s| rounded(&exact.inward(s.splitter, s.inside))).collect();
         let turns = boundary.sides().iter().enumerate().map(|(k, side)| {
             let (m, n) = (normals[(k + normals.len() - 1) % normals.len()], normals[k]);
             match side.turn {
@@ -194,9 +195,7 @@ impl<'a> Exact<'a> {
             let k = k % inward.len();
             primitive(cross(&inward[(k + inward.len() - 1) % inward.len()], &inward[k]))
         };
-        (0..inward.len())
-            .map(|k| Arc { inward: inward[k].clone(), ends: Some([corner(k), corner(k + 1)]) })
-            .collect()
+        (0..inward.len()).map(|k| Arc { inward: inward[k].clone(), ends: Some([corner(k), corner(k + 1)]) }).collect()
     }
 
     /// The sides of a loop, which is simple and has its rounded numbers right.
