@@ -2,7 +2,8 @@
 //!
 //! What a projection cannot show in one piece (the seam of a panorama, what is beyond a window) is cut off the cells, at
 //! exact great circles, before they are merged. Every stretch between two regions is flattened once, so that both have the
-//! same points on it, bit by bit.
+//! same points on it, bit by bit. Curves are broken where they cross the lines of a grid that all share: between the
+//! borders of a square, curves that do not cross have chords that do not cross.
 
 use super::{Projection, Projector, STEREOGRAPHIC_REACH};
 use crate::contour::ContourImage;
@@ -17,6 +18,12 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const LONG: f64 = 0.15;
 /// Halvings of such a piece at most.
 const DEPTH: u32 = 24;
+/// A line `x = at` (axis 0) or `y = at` of the picture.
+struct Line {
+    axis: usize,
+    at: f64,
+}
+
 /// No picture is finer.
 const FINEST: f64 = 1e-9;
 
@@ -50,8 +57,8 @@ impl Projector {
     ///
     /// Curves are flattened to within about `tolerance`, in the picture's units (less than 1e-9, or NaN, counts as 1e-9). Regions
     /// that share a part of their boundary share its points exactly, so that there are neither gaps nor overlaps, with
-    /// one exception: where a region is thinner than the tolerance, the straight pieces of one side of it may cross those of
-    /// the other. Regions and holes that rounding leaves fewer than three different points are left out.
+    /// one exception: where a corner is nearer to a curve than the tolerance, a straight piece of the curve may pass it on its
+    /// other side. Regions and holes that rounding leaves fewer than three different points are left out.
     ///
     /// A panorama is cut at 180 degrees. Of the whole sphere a stereographic picture shows what
     /// is less than 135 degrees to the right, left, top or bottom; here the pyramid beyond is left out, not a
@@ -169,6 +176,53 @@ impl Curve<'_> {
         self.flattener.beside_seam(place, if near == Part::Front { far } else { near })
     }
 
+    /// Where it crosses a line of the picture between two angles: a line is a circle on the sphere, `n . d = c`.
+    fn crossing(&self, line: &Line, [from, to]: [f64; 2]) -> Option<f64> {
+        let projector = self.flattener.projector;
+        let axis = if line.axis == 0 { DVec3::X } else { DVec3::Y };
+        let (n, c) = match projector.projection {
+            Projection::Nusselt | Projection::Gnomonic => (axis, line.at),
+            Projection::Stereographic => (axis - DVec3::Z * line.at, line.at),
+            Projection::Equirectangular if line.axis == 0 => {
+                let (sine, cosine) = line.at.sin_cos();
+                (DVec3::new(cosine, 0.0, -sine), 0.0)
+            }
+            Projection::Equirectangular => (DVec3::Y, line.at.sin()),
+        };
+        let n = projector.in_world(n);
+        let [a, b] = self.axes.map(|axis| n.dot(axis));
+        let (middle, half) = (b.atan2(a), (c / a.hypot(b)).acos());
+        let candidates = [middle - half, middle + half].map(|angle| angle + ((from - angle) / TAU).ceil() * TAU);
+        candidates.into_iter().find(|&angle| angle > from && angle < to)
+    }
+
+    /// The points between two angles at which the picture crosses lines of a grid, and those that it needs beyond.
+    fn bend_across_grid(&self, [from, to]: [f64; 2], [p, q]: [DVec2; 2], path: &mut Vec<DVec2>) {
+        let spacing = 2.0 * self.flattener.tolerance.sqrt();
+        let mut cuts: Vec<(f64, DVec2)> = Vec::new();
+        for axis in 0..2 {
+            let [low, high] = [p[axis].min(q[axis]), p[axis].max(q[axis])].map(|x| x / spacing);
+            let mut k = low.floor() + 1.0;
+            while k < high {
+                let line = Line { axis, at: k * spacing };
+                if let Some(angle) = self.crossing(&line, [from, to]) {
+                    let mut place = self.place(angle);
+                    place[axis] = line.at;
+                    cuts.push((angle, place));
+                }
+                k += 1.0;
+            }
+        }
+        cuts.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let (mut from, mut p) = (from, p);
+        for (angle, place) in cuts {
+            self.bend([from, angle], [p, place], DEPTH, path);
+            path.push(place);
+            (from, p) = (angle, place);
+        }
+        self.bend([from, to], [p, q], DEPTH, path);
+    }
+
     /// The points between two angles that the picture needs.
     fn bend(&self, [from, to]: [f64; 2], [p, q]: [DVec2; 2], depth: u32, path: &mut Vec<DVec2>) {
         let middle = f64::midpoint(from, to);
@@ -239,7 +293,7 @@ impl<'a> Flattener<'a> {
         for k in 1..=pieces as u32 {
             let [from, to] = [k - 1, k].map(|k| curve.length * f64::from(k) / pieces);
             let next = if k == pieces as u32 { self.end(forward) } else { curve.place(to) };
-            curve.bend([from, to], [last, next], DEPTH, &mut path);
+            curve.bend_across_grid([from, to], [last, next], &mut path);
             if k < pieces as u32 {
                 path.push(next);
             }

@@ -258,8 +258,10 @@ fn places_of(
         a.circle.cmp(&b.circle).then(a.angle.total_cmp(&b.angle)).then((a.side, a.which).cmp(&(b.side, b.which)))
     });
     let mut places: Vec<Place> = Vec::new();
-    let mut circle_places = vec![0];
+    let mut circle_places = Vec::with_capacity(circles.count() + 1);
     for on_circle in ends.chunk_by_mut(|a, b| a.circle == b.circle) {
+        // Great circles without sides have no places.
+        circle_places.resize(on_circle[0].circle as usize + 1, places.len() as u32);
         start_after_gap(on_circle);
         for near in on_circle.chunk_by_mut(|a, b| b.angle - a.angle <= TELLING) {
             sort_near(mosaic, near);
@@ -271,8 +273,8 @@ fn places_of(
                 sides[side as usize].ends[usize::from(which)] = places.len() as u32 - 1;
             }
         }
-        circle_places.push(places.len() as u32);
     }
+    circle_places.resize(circles.count() + 1, places.len() as u32);
     (places, circle_places)
 }
 

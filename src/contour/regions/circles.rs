@@ -20,14 +20,16 @@ pub(crate) struct GreatCircles {
 
 impl GreatCircles {
     /// Finds them. Equal great circles have the same cosine with any fixed axis, but for rounding. Sorted by that, only
-    /// those closer than what rounding can do are compared, as vectors of whole numbers without a common divisor.
-    pub(super) fn new(mosaic: &mut Mosaic<'_>) -> Self {
+    /// those closer than what rounding can do are compared, as vectors of whole numbers without a common divisor. The names
+    /// in `also` get a number even if no side is on such a great circle.
+    pub(super) fn new(mosaic: &mut Mosaic<'_>, also: &[CircleId]) -> Self {
         let axis = DVec3::new(0.541_196_1, 0.306_562_96, 0.783_036_4);
         let count = mosaic.directions.circle_count();
         let mut is_used = vec![false; count];
         for arc in mosaic.faces.iter().flat_map(|face| mosaic.boundary(face)) {
             is_used[arc.along.circle().0 as usize] = true;
         }
+        also.iter().for_each(|circle| is_used[circle.0 as usize] = true);
         let used = (0..count as u32).filter(|&k| is_used[k as usize]);
         let cosine = |k: u32| mosaic.directions.normal(CircleId(k)).v.normalize_or_zero().dot(axis).abs();
         let mut order: Vec<(f64, u32)> = used.map(|k| (cosine(k), k)).collect();
@@ -64,9 +66,9 @@ impl GreatCircles {
         (circle, sign * half.inside())
     }
 
-    /// The number of a great circle by one of its names; `None` if no side lies on it.
-    pub(super) fn number(&self, name: CircleId) -> Option<u32> {
-        self.of.get(name.0 as usize).map(|&(circle, _)| circle).filter(|&circle| circle != UNUSED)
+    /// The number of a great circle by one of the names that it was found by.
+    pub(super) fn number(&self, name: CircleId) -> u32 {
+        self.of[name.0 as usize].0
     }
 
     /// The name whose normal is the great circle's.

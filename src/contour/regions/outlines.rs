@@ -71,7 +71,8 @@ pub(crate) struct Outlines<'a> {
 impl<'a> Outlines<'a> {
     /// Merges the faces of a mosaic.
     pub(crate) fn new(mut mosaic: Mosaic<'a>, seam: Option<Seam>) -> Self {
-        let circles = GreatCircles::new(&mut mosaic);
+        let circles =
+            GreatCircles::new(&mut mosaic, seam.as_ref().map_or(&[], |seam| std::slice::from_ref(&seam.along)));
         let arrangement = Arrangement::new(&mut mosaic, &circles);
         let stretches = arrangement.places.len() as u32;
         let borders: Vec<bool> = (0..stretches).map(|s| arrangement.is_border(&mosaic.faces, s)).collect();
@@ -224,7 +225,7 @@ pub(crate) fn inside(run: Run) -> Sign {
 fn spots(mosaic: &mut Mosaic<'_>, circles: &GreatCircles, arrangement: &Arrangement, seam: Option<Seam>) -> Vec<Spot> {
     let mut spots = vec![Spot::Plain; arrangement.vertex_count()];
     let Some(Seam { along, across }) = seam else { return spots };
-    let Some(circle) = circles.number(along) else { return spots };
+    let circle = circles.number(along);
     for place in arrangement.places_on(circle) {
         let parts = arrangement.faces_beside(place).map(|pair| pair.map(|face| mosaic.faces[face as usize]));
         if parts.is_some_and(|[a, b]| a.meets_at_seam(&b)) {
