@@ -252,8 +252,8 @@ impl<'a> Flattener<'a> {
     fn beside_seam(&self, p: DVec2, part: Part) -> DVec2 {
         let x = match part {
             _ if !self.is_panorama() => p.x,
-            Part::Right if p.x < 0.0 => (p.x + TAU).min(PI),
-            Part::Left if p.x > 0.0 => (p.x - TAU).max(-PI),
+            Part::Right if p.x < -FRAC_PI_2 => (p.x + TAU).min(PI),
+            Part::Left if p.x > FRAC_PI_2 => (p.x - TAU).max(-PI),
             _ => p.x,
         };
         DVec2::new(x, p.y)
