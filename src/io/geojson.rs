@@ -1,9 +1,9 @@
-//! Visible regions as GeoJSON (RFC 7946).
+//! Visible regions as `GeoJSON` (RFC 7946).
 
 use super::contour_json::{Share, domain_row, side_name};
 use super::json::{field, rows};
 use crate::contour::{ContourImage, FlatRegion, Projection, Projector};
-use crate::scene::{PolygonId, Side};
+use crate::scene::{PolygonId, PolygonRef, Side};
 use glam::DVec2;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -82,7 +82,7 @@ pub fn write_geojson(image: &ContourImage, projector: &Projector, tolerance: f64
         let properties = Properties {
             polygon: polygon.map(|id| id.0),
             side: side.map(side_name),
-            object: named.map(|polygon| polygon.object_name()),
+            object: named.map(PolygonRef::object_name),
             material: named.map(|polygon| polygon.material().name.as_str()),
             share,
         };

@@ -29,7 +29,9 @@ impl GreatCircles {
         for arc in mosaic.faces.iter().flat_map(|face| mosaic.boundary(face)) {
             is_used[arc.along.circle().0 as usize] = true;
         }
-        also.iter().for_each(|circle| is_used[circle.0 as usize] = true);
+        for circle in also {
+            is_used[circle.0 as usize] = true;
+        }
         let used = (0..count as u32).filter(|&k| is_used[k as usize]);
         let cosine = |k: u32| mosaic.directions.normal(CircleId(k)).v.normalize_or_zero().dot(axis).abs();
         let mut order: Vec<(f64, u32)> = used.map(|k| (cosine(k), k)).collect();

@@ -22,6 +22,10 @@ struct Arc {
     ends: Option<[Vector; 2]>,
 }
 
+/// Whether a side is one of a region (or of a cell), whether it runs counter-clockwise about the normal of its great
+/// circle, and its ends.
+type OnCircle = (bool, bool, Option<[Vector; 2]>);
+
 /// How often a stretch is covered in each direction: by cells, by regions.
 #[derive(Clone, Copy, Default)]
 struct Cover {
@@ -44,7 +48,7 @@ pub fn check_regions(image: &ContourImage) -> Result<usize, Defect> {
     let regions = image.regions();
     check_cells(image, &regions)?;
     let exact = Exact::new(image);
-    let mut arcs: BTreeMap<(Label, Vector), Vec<(bool, bool, Option<[Vector; 2]>)>> = BTreeMap::new();
+    let mut arcs: BTreeMap<(Label, Vector), Vec<OnCircle>> = BTreeMap::new();
     let mut add = |label: Label, is_region: bool, arc: Arc| {
         let forward = arc.inward.iter().find(|x| !x.is_zero()).is_some_and(Signed::is_positive);
         let circle = if forward { arc.inward } else { arc.inward.map(|x| -x) };
@@ -266,11 +270,13 @@ fn rounded(v: &Vector) -> DVec3 {
 }
 
 /// Counts for every stretch between neighbouring ends.
-fn covers(circle: &Vector, arcs: &[(bool, bool, Option<[Vector; 2]>)]) -> Vec<Cover> {
+fn covers(circle: &Vector, arcs: &[OnCircle]) -> Vec<Cover> {
     let mut places: Vec<&Vector> = arcs.iter().filter_map(|arc| arc.2.as_ref()).flatten().collect();
     let Some(&first) = places.first() else {
         let mut cover = Cover::default();
-        arcs.iter().for_each(|&(is_region, forward, _)| count(&mut cover, is_region, forward));
+        for &(is_region, forward, _) in arcs {
+            count(&mut cover, is_region, forward);
+        }
         return vec![cover];
     };
     let ahead = |p: &Vector, q: &Vector| sign(&dot(circle, &cross(p, q)));
@@ -285,12 +291,14 @@ fn covers(circle: &Vector, arcs: &[(bool, bool, Option<[Vector; 2]>)]) -> Vec<Co
     let mut covers = vec![Cover::default(); places.len()];
     for (is_region, forward, ends) in arcs {
         let Some([from, to]) = ends else {
-            covers.iter_mut().for_each(|cover| count(cover, *is_region, *forward));
+            for cover in &mut covers {
+                count(cover, *is_region, *forward);
+            }
             continue;
         };
         let place = |p: &Vector| {
             let order = |q: &&Vector| half(q).cmp(&half(p)).then_with(|| 0.cmp(&ahead(q, p)));
-            places.binary_search_by(|q| order(q)).unwrap_or_else(|k| k)
+            places.binary_search_by(order).unwrap_or_else(|k| k)
         };
         let [from, to] = if *forward { [from, to] } else { [to, from] }.map(place);
         let mut k = from;
