@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
-use nusselt::contour::{Domain, Projection, Projector, ViewOptions, Viewpoint};
+use nusselt::contour::{Domain, Projection, Projector, ViewOptions, Viewpoint, VisibleRegion};
 use nusselt::samples::{Kind, generate};
 use std::error::Error;
 use std::time::Instant;
@@ -102,7 +102,7 @@ fn regions() -> Result<(), Box<dyn Error>> {
                 for (sum, time) in times.iter_mut().zip([viewed - start, merged - viewed, drawn - merged]) {
                     *sum += time.as_secs_f64() * 1e3 / views as f64;
                 }
-                let loops = regions.iter().flat_map(|region| region.loops());
+                let loops = regions.iter().flat_map(VisibleRegion::loops);
                 let rings = picture.iter().flat_map(|region| region.holes.iter().chain([&region.exterior]));
                 let row = [
                     image.cell_count(),
