@@ -317,3 +317,13 @@ fn panoramas_of_tilted_hemispheres_have_no_leaps() {
         assert!((area(&regions) - PI * PI).abs() < 1e-6, "{normal}: {}", area(&regions) - PI * PI);
     }
 }
+
+/// A horizon that all but passes through the poles, found by a property test.
+#[test]
+fn panoramas_of_all_but_upright_horizons_have_no_leaps() {
+    let empty = Scene::builder().build().expect("no faces");
+    let normal = DVec3::new(-4.780_716_324_351_141_5, -3.807_920_823_809_259_2, -5e-324);
+    let half = view(&empty, DVec3::ZERO, &Domain::Hemisphere(normal));
+    let area = area(&regions(&half, Projection::Equirectangular));
+    assert!((area - PI * PI).abs() < 1e-6, "{area}");
+}

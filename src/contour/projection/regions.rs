@@ -24,6 +24,8 @@ struct Line {
     at: f64,
 }
 
+/// Longitudes further from 0 than this are near a panorama's seam.
+const BESIDE: f64 = 0.75 * PI;
 /// No picture is finer.
 const FINEST: f64 = 1e-9;
 
@@ -248,12 +250,13 @@ impl<'a> Flattener<'a> {
         self.projector.projection == Projection::Equirectangular
     }
 
-    /// Rounding may put what is beside the seam of a panorama on its other side.
+    /// Rounding may put what is beside the seam of a panorama on its other side. What is far from it is left alone: a
+    /// stretch may begin beside the seam and end elsewhere.
     fn beside_seam(&self, p: DVec2, part: Part) -> DVec2 {
         let x = match part {
             _ if !self.is_panorama() => p.x,
-            Part::Right if p.x < -FRAC_PI_2 => (p.x + TAU).min(PI),
-            Part::Left if p.x > FRAC_PI_2 => (p.x - TAU).max(-PI),
+            Part::Right if p.x < -BESIDE => (p.x + TAU).min(PI),
+            Part::Left if p.x > BESIDE => (p.x - TAU).max(-PI),
             _ => p.x,
         };
         DVec2::new(x, p.y)
