@@ -1,10 +1,10 @@
 //! The tables of docs/performance.md: `cargo bench --bench measure`, or for one scene
 //! `cargo bench --bench measure -- room 50000 [quadtree depth]`; `floor` for a depth looks from points on
-//! the floor instead of points in the air.
+//! the floor instead of points in the air. `cargo bench --bench measure -- regions` is the table of visible regions.
 
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
-use nusselt::contour::{Domain, ViewOptions, Viewpoint};
+use nusselt::contour::{Domain, Projection, Projector, ViewOptions, Viewpoint, VisibleRegion};
 use nusselt::samples::{Kind, generate};
 use std::error::Error;
 use std::time::Instant;
@@ -14,6 +14,9 @@ const VIEWS: usize = 100;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
+    if words == ["regions"] {
+        return regions();
+    }
     println!(
         "| scene | polygons | BSP s | fragments | depth | view ms | worst | factors ms | cells | visible | inserted | skipped | nodes | filter undecided | integers | worst sum |"
     );
@@ -74,5 +77,48 @@ fn row(kind: Kind, polygons: usize, depth: Option<u32>, floor: bool) -> Result<(
         longest * 1e3,
         milli(factors),
     );
+    Ok(())
+}
+
+/// What it takes to merge cells to regions, and to draw those in Nusselt's projection.
+fn regions() -> Result<(), Box<dyn Error>> {
+    println!("| scene | polygons | cells | view ms | merge ms | regions | loops | sides | picture ms | points |");
+    println!("| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    for kind in Kind::ALL {
+        for polygons in [1_000, 10_000, 50_000] {
+            let mesh = generate(kind, polygons, 1)?;
+            let bsp = SceneBsp::build(&mesh.to_builder().build()?, &BspOptions::default())?;
+            let mut times = [0.0; 3];
+            let mut counts = [0; 5];
+            let views = VIEWS / 5;
+            for point in mesh.free_points(views, 3) {
+                let start = Instant::now();
+                let image = bsp.view(&Viewpoint::free(DVec3::from(point)), &Domain::Hemisphere(DVec3::Z))?;
+                let viewed = Instant::now();
+                let regions = image.regions();
+                let merged = Instant::now();
+                let picture = Projector::of_image(&image, Projection::Nusselt)?.regions(&image, Projector::TOLERANCE);
+                let drawn = Instant::now();
+                for (sum, time) in times.iter_mut().zip([viewed - start, merged - viewed, drawn - merged]) {
+                    *sum += time.as_secs_f64() * 1e3 / views as f64;
+                }
+                let loops = regions.iter().flat_map(VisibleRegion::loops);
+                let rings = picture.iter().flat_map(|region| region.holes.iter().chain([&region.exterior]));
+                let row = [
+                    image.cell_count(),
+                    regions.len(),
+                    loops.clone().count(),
+                    loops.map(|boundary| boundary.sides().len()).sum(),
+                    rings.map(Vec::len).sum(),
+                ];
+                counts.iter_mut().zip(row).for_each(|(sum, n)| *sum += n);
+            }
+            let [view, merge, draw] = times;
+            let [cells, regions, loops, sides, points] = counts.map(|sum| sum / views);
+            println!(
+                "| {kind} | {polygons} | {cells} | {view:.2} | {merge:.2} | {regions} | {loops} | {sides} | {draw:.2} | {points} |"
+            );
+        }
+    }
     Ok(())
 }

@@ -152,7 +152,7 @@ fn contour_json_keeps_to_its_schema() {
 fn the_same_command_writes_the_same_file() {
     let folder = Folder::new("same");
     folder.run("scene room --polygons 300 --seed 3 -o room.obj", 0);
-    for ending in ["json", "svg", "obj"] {
+    for ending in ["json", "svg", "obj", "geojson"] {
         for name in ["one", "two"] {
             let threads = name.len();
             folder
@@ -215,6 +215,8 @@ fn wrong_command_lines_say_what_is_wrong_in_one_line_and_do_nothing() {
         ("contour box.obj --eye 1,2,3 --on 1:top", "top"),
         ("contour box.obj --eye 1,2,3 --on 16 -o x.json", "16"),
         ("contour box.obj --eye 1,2,3 --sphere -o x.bmp", ".svg"),
+        ("contour box.obj --eye 1,2,3 --sphere -o x.bmp", ".geojson"),
+        ("contour box.obj --eye 1,2,3 --sphere -o x.geojson --projection nusselt", "equirectangular"),
         ("contour box.obj --eye 1,2,3 --sphere -o x", ".svg"),
         ("contour nowhere.obj --eye 1,2,3 --sphere -o x.bmp", ".svg"),
         ("contour box.obj --eye 1,2,3 --sphere -o x.svg --projection nusselt", "equirectangular"),
@@ -407,11 +409,81 @@ fn info_counts_what_is_there() {
 fn an_empty_scene_shows_the_background() {
     let folder = Folder::new("empty");
     folder.write("empty.obj", "# nothing\n");
-    folder.run("contour empty.obj --eye 0,0,0 --normal 1,2,3 -o x.json -o x.svg -o x.obj", 0);
+    folder.run("contour empty.obj --eye 0,0,0 --normal 1,2,3 -o x.json -o x.svg -o x.obj -o x.geojson", 0);
     let image = folder.json("x.json");
     check_contour(&image, true);
     assert!(close(image["background"]["solid_angle"].as_f64().expect("a number"), 2.0 * PI));
     check_xml(&folder.read("x.svg"));
+    assert_eq!(folder.json("x.geojson")["features"].as_array().map(Vec::len), Some(1));
+    // The whole sphere is a rectangle.
+    folder.run("contour empty.obj --eye 0,0,0 --sphere -o y.geojson", 0);
+    let sphere = &folder.json("y.geojson")["features"][0]["geometry"]["coordinates"];
+    assert!(close(area_of(sphere), 360.0 * 180.0), "{sphere}");
+}
+
+/// The area of a `MultiPolygon`; checks that its rings are closed and turn as RFC 7946 wants it.
+fn area_of(coordinates: &Value) -> f64 {
+    let mut total = 0.0;
+    for polygon in coordinates.as_array().expect("polygons") {
+        for (k, ring) in polygon.as_array().expect("rings").iter().enumerate() {
+            let ring: Vec<Vec<f64>> = ring.as_array().expect("positions").iter().map(numbers).collect();
+            assert!(ring.len() >= 4 && ring.first() == ring.last());
+            let area: f64 = ring.windows(2).map(|p| (p[0][0] * p[1][1] - p[0][1] * p[1][0]) / 2.0).sum();
+            assert!((area > 0.0) == (k == 0), "exteriors are counter-clockwise, holes clockwise");
+            total += area;
+        }
+    }
+    total
+}
+
+#[test]
+fn geojson_has_the_regions_of_everything_seen() {
+    let folder = Folder::new("geojson");
+    folder.run("contour box.obj --eye 278,273,-100 --normal 0,0,1 -o x.geojson -o x.json", 0);
+    let [picture, image] = ["x.geojson", "x.json"].map(|name| folder.json(name));
+    assert_eq!(picture["type"], "FeatureCollection");
+    assert_eq!(picture["schema"], "nusselt.regions/1");
+    assert_eq!((&picture["projection"], &picture["units"]), (&Value::from("nusselt"), &Value::from("one")));
+    assert_eq!(picture["domain"], image["domain"]);
+    let features = picture["features"].as_array().expect("features");
+    let of = |key: &str| features.iter().map(|f| f["properties"][key].as_f64().expect("a number")).sum::<f64>();
+    assert!(close(of("form_factor"), 1.0) && close(of("solid_angle"), TAU));
+    let mut total = 0.0;
+    for feature in features {
+        let properties = &feature["properties"];
+        let area = area_of(&feature["geometry"]["coordinates"]);
+        assert!((area / PI - properties["form_factor"].as_f64().expect("a number")).abs() < 1e-4, "{properties}");
+        total += area;
+        let known = |row: &&Value| row["polygon"] == properties["polygon"];
+        match image["polygons"].as_array().expect("rows").iter().find(known) {
+            Some(row) => {
+                assert_eq!((&row["object"], &row["material"]), (&properties["object"], &properties["material"]));
+                assert!(properties["side"].is_string() && feature["geometry"]["type"] == "MultiPolygon");
+            }
+            None => assert!(["polygon", "side", "object", "material"].iter().all(|key| properties[key].is_null())),
+        }
+    }
+    assert!((total - PI).abs() < 1e-4, "{total}");
+    assert_eq!(features.last().map(|f| f["properties"]["polygon"].is_null()), Some(true), "background comes last");
+
+    folder.run("contour box.obj --eye 278,273,100 --sphere -o y.geojson", 0);
+    let panorama = folder.json("y.geojson");
+    assert_eq!(
+        (&panorama["projection"], &panorama["units"]),
+        (&Value::from("equirectangular"), &Value::from("degree"))
+    );
+    let features = panorama["features"].as_array().expect("features");
+    assert!(features.iter().all(|feature| feature["properties"].get("form_factor").is_none()));
+    let total: f64 = features.iter().map(|feature| area_of(&feature["geometry"]["coordinates"])).sum();
+    assert!((total - 360.0 * 180.0).abs() < 1.0, "{total}");
+
+    // What is not in the picture is listed all the same.
+    folder.run("contour box.obj --eye 278,273,100 --sphere --projection gnomonic -o z.geojson", 0);
+    let window = folder.json("z.geojson");
+    let features = window["features"].as_array().expect("features");
+    assert!(features.iter().any(|feature| feature["geometry"].is_null()));
+    let angles = features.iter().map(|f| f["properties"]["solid_angle"].as_f64().expect("a number"));
+    assert!(close(angles.sum(), 2.0 * TAU));
 }
 
 #[test]

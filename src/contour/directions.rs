@@ -5,6 +5,9 @@ use crate::bsp::{LineDef, LineId, PointId, Skeleton, Tree};
 use crate::exact::{self, Approx3, Arena, Constructor, Frame, Kept3, PredicateStats, Sign, ZeroComponents};
 use crate::scene::{PlaneId, Splitter};
 use glam::DVec3;
+use num_bigint::BigInt;
+use num_integer::Integer;
+use num_traits::{Signed, Zero};
 use rustc_hash::FxHashMap;
 
 /// A great circle of a view.
@@ -258,6 +261,25 @@ impl Directions {
         let normal = Constructor { frame: &self.frame, arena: &mut cache.arena }.keep_splitter(&definition);
         cache.normals.insert(c, normal);
         normal
+    }
+
+    /// What all normals of one great circle have in common: the multiple that is whole, has no common divisor and starts
+    /// with a positive number; and the sign of the normal's own multiple of that.
+    pub(crate) fn primitive_normal(
+        &self,
+        skeleton: &Skeleton,
+        c: CircleId,
+        cache: &mut ExactCache,
+    ) -> ([BigInt; 3], Sign) {
+        let normal = self.exact_normal(skeleton, c, cache);
+        let mark = cache.arena.mark();
+        let numbers = cache.arena.numbers(&normal);
+        let whole = numbers.map(|n| cache.arena.big(n));
+        cache.arena.release(mark);
+        let divisor = whole.iter().fold(BigInt::zero(), |all, x| all.gcd(x));
+        let is_negative = whole.iter().find(|x| !x.is_zero()).is_some_and(Signed::is_negative);
+        let (divisor, sign) = if is_negative { (-divisor, Sign::Negative) } else { (divisor, Sign::Positive) };
+        (if divisor.is_zero() { whole } else { whole.map(|x| x / &divisor) }, sign)
     }
 
     fn exact_point(&self, skeleton: &Skeleton, point: PointId, cache: &mut ExactCache) -> Kept3 {

@@ -8,11 +8,14 @@
 mod certify;
 mod directions;
 mod domain;
+#[cfg(feature = "geo")]
+mod geo;
 mod image;
 mod locate;
 mod neighbours;
 mod polygon;
 mod projection;
+mod regions;
 mod subdivision;
 mod tree;
 mod view;
@@ -23,9 +26,12 @@ mod tests;
 
 pub use crate::scene::Splitter;
 pub use domain::Domain;
+#[cfg(feature = "geo")]
+pub use geo::GeoRegion;
 pub use image::{Cell, CellId, ContourImage, TreeArc};
 pub use locate::{Location, Region};
 pub use neighbours::Neighbour;
-pub use projection::{Projection, ProjectionError, Projector, ViewFrame, Window};
+pub use projection::{FlatRegion, Projection, ProjectionError, Projector, ViewFrame, Window};
+pub use regions::{RegionLoop, RegionSide, VisibleRegion};
 pub use view::{ViewError, ViewOptions, ViewStats};
 pub use viewpoint::{SurfaceError, Viewpoint};

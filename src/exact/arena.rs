@@ -6,6 +6,7 @@
 
 use super::{Approx3, Sign, U, fixed};
 use glam::DVec3;
+use num_bigint::BigInt;
 use std::cmp::Ordering;
 
 /// A signed integer in an [`Arena`]: sign and magnitude, least limb first, no leading zero limbs.
@@ -91,6 +92,13 @@ impl Arena {
 
     fn range(n: Num) -> std::ops::Range<usize> {
         n.start as usize..n.start as usize + n.len as usize
+    }
+
+    /// The number outside of the arena.
+    pub(crate) fn big(&self, n: Num) -> BigInt {
+        let limbs = self.limbs[Self::range(n)].iter();
+        let digits: Vec<u32> = limbs.flat_map(|&limb| [limb as u32, (limb >> 32) as u32]).collect();
+        BigInt::from_slice(if n.negative { num_bigint::Sign::Minus } else { num_bigint::Sign::Plus }, &digits)
     }
 
     pub(crate) fn integer(&mut self, value: i128) -> Num {

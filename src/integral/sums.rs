@@ -1,7 +1,7 @@
 //! Solid angles and form factors of what a contour image shows.
 
 use super::{form_factor, solid_angle};
-use crate::contour::{Cell, ContourImage};
+use crate::contour::{Cell, ContourImage, VisibleRegion};
 use crate::scene::{ObjectId, PolygonId, Scene, Side};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -107,5 +107,17 @@ impl Cell<'_> {
     pub fn form_factor(self) -> Option<f64> {
         let normal = self.image().normal()?;
         Some(form_factor(&self.boundary().collect::<Vec<_>>(), normal))
+    }
+}
+
+impl VisibleRegion {
+    /// Its solid angle in steradians, as part of its image: the sum over its cells.
+    pub fn solid_angle(&self, image: &ContourImage) -> f64 {
+        self.cells().iter().map(|&id| image.cell(id).solid_angle()).sum()
+    }
+
+    /// Its form factor likewise; `None` if the domain has no normal.
+    pub fn form_factor(&self, image: &ContourImage) -> Option<f64> {
+        self.cells().iter().map(|&id| image.cell(id).form_factor()).sum()
     }
 }

@@ -153,7 +153,7 @@ impl<'a> ContourSummary<'a> {
 }
 
 impl Share {
-    fn add(&mut self, other: Self) {
+    pub(super) fn add(&mut self, other: Self) {
         self.solid_angle += other.solid_angle;
         if let Some(factor) = other.form_factor {
             *self.form_factor.get_or_insert_default() += factor;
@@ -161,7 +161,7 @@ impl Share {
     }
 }
 
-fn domain_row(image: &ContourImage) -> DomainRow {
+pub(super) fn domain_row(image: &ContourImage) -> DomainRow {
     let normal = match image.domain() {
         Domain::Sphere => None,
         Domain::Hemisphere(normal) => Some(*normal),
@@ -169,6 +169,10 @@ fn domain_row(image: &ContourImage) -> DomainRow {
     };
     // Adding 0 turns -0 into 0.
     normal.map_or(DomainRow::Sphere, |normal| DomainRow::Hemisphere { normal: (normal + 0.0).to_array() })
+}
+
+pub(super) fn side_name(side: Side) -> &'static str {
+    if side == Side::Front { "front" } else { "back" }
 }
 
 #[derive(Serialize)]
@@ -197,7 +201,7 @@ pub fn write_contour_json(image: &ContourImage, summary: &ContourSummary<'_>, ou
     rows(&mut out, "cells", image.cells(), |out, cell| {
         boundary.clear();
         boundary.extend(cell.boundary().map(|d| d.to_array()));
-        let side = cell.side().map(|side| if side == Side::Front { "front" } else { "back" });
+        let side = cell.side().map(side_name);
         let share = Share { solid_angle: cell.solid_angle(), form_factor: cell.form_factor() };
         let row = CellRow { polygon: cell.polygon().map(|id| id.0), side, boundary: &boundary, share };
         Ok(serde_json::to_writer(out, &row)?)

@@ -10,6 +10,8 @@ pub mod certificate;
 mod contour_json;
 mod error;
 #[cfg(feature = "json")]
+mod geojson;
+#[cfg(feature = "json")]
 mod json;
 mod lines;
 pub mod mtl;
@@ -28,6 +30,8 @@ pub use contour_json::{
     CONTOUR_SCHEMA, CertificateRow, ContourSummary, DomainRow, ObjectRow, PolygonRow, Share, write_contour_json,
 };
 pub use error::{Fault, Faults, ReadError};
+#[cfg(feature = "json")]
+pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use svg::{SvgOptions, write_svg};
 pub use visible_obj::{fragment_groups, visible_groups};
 

@@ -7,7 +7,7 @@
 //! - [`Case::decode`] makes a case of the bytes of a fuzzer, and every [`Case`] prints itself as Rust.
 //! - [`gallery`]: degenerate scenes by name.
 //! - *Checks*, which return a [`Defect`] rather than panic: [`check_image`] for a contour image, [`check_bsp`] for a 3D
-//!   BSP, [`check_same_view`] and [`check_same_bits`] for two images that must agree, and their parts.
+//!   BSP, [`check_regions`] for the visible regions of an image, [`check_same_view`] and [`check_same_bits`] for two images that must agree, and their parts.
 //! - [`RayOracle`], which tells exactly what one ray sees.
 //!
 //! ```
@@ -38,8 +38,8 @@ pub use crate::verify::{RayAnswer, RayOracle};
 pub use case::{Case, CaseError, Outlook, case, case_of};
 pub use check::{
     Defect, FragmentFault, angle_tolerance, check_bsp, check_closed, check_fragments, check_image, check_labels,
-    check_mirror, check_order, check_same_bits, check_same_view, check_sums, check_tiling, inner_directions,
-    telling_directions,
+    check_mirror, check_order, check_regions, check_same_bits, check_same_regions, check_same_view, check_sums,
+    check_tiling, inner_directions, telling_directions,
 };
 pub use faces::Faces;
 pub use mutants::{check_verdict, mutated};

@@ -5,6 +5,7 @@
 mod bsp;
 mod laws;
 mod proof;
+mod regions;
 mod tiling;
 
 use glam::DVec3;

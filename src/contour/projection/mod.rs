@@ -7,10 +7,12 @@
 
 mod flatten;
 mod frame;
+mod regions;
 #[cfg(test)]
 mod tests;
 
 pub use frame::ViewFrame;
+pub use regions::FlatRegion;
 
 use super::{ContourImage, Domain};
 use glam::{DVec2, DVec3};

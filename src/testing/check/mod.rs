@@ -4,12 +4,14 @@ mod agreement;
 mod fragments;
 mod labels;
 mod order;
+mod regions;
 mod tiling;
 
 pub use agreement::{check_same_bits, check_same_view};
 pub use fragments::check_fragments;
 pub use labels::{check_labels, inner_directions};
 pub use order::{check_mirror, check_order};
+pub use regions::{check_regions, check_same_regions};
 pub use tiling::{angle_tolerance, check_closed, check_sums, check_tiling, telling_directions};
 
 use super::RayOracle;
@@ -144,6 +146,12 @@ pub enum Defect {
         second: f64,
         /// What rounding may amount to.
         tolerance: f64,
+    },
+    /// The visible regions of an image are not its cells merged, or those of two images differ.
+    #[error("the visible regions are wrong: {what}")]
+    Regions {
+        /// In what.
+        what: String,
     },
     /// Two images that must be the same differ.
     #[error("the two images differ: {what}")]

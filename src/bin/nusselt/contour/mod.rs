@@ -11,7 +11,9 @@ use crate::proof::{Proof, failed_image};
 use crate::summary::Timing;
 use glam::DVec3;
 use nusselt::contour::{ContourImage, Projection, Projector, ViewOptions};
-use nusselt::io::{ContourSummary, SvgOptions, visible_groups, write_certificate, write_contour_json, write_svg};
+use nusselt::io::{
+    ContourSummary, SvgOptions, visible_groups, write_certificate, write_contour_json, write_geojson, write_svg,
+};
 use nusselt::scene::{PolygonId, Side};
 use nusselt::verify::Arithmetic;
 use std::path::{Path, PathBuf};
@@ -53,10 +55,11 @@ pub(crate) struct Contour {
     /// Take --eye as it is, even if it lies on a polygon
     #[arg(long, conflicts_with_all = ["sphere", "on"])]
     free: bool,
-    /// Write to this file; the ending decides: .json, .svg, or .obj (visible parts in space). May be repeated
+    /// Write to this file; the ending decides: .json, .svg, .obj (visible parts in space), or .geojson (visible
+    /// regions as polygons with holes, in coordinates of the picture). May be repeated
     #[arg(short, long, value_name = "FILE", value_parser = Output::parse)]
     output: Vec<Output>,
-    /// How to draw .svg [default: nusselt; equirectangular for the sphere]
+    /// How to draw .svg and .geojson [default: nusselt; equirectangular for the sphere]
     #[arg(long, value_name = "NAME", value_parser = parse_projection)]
     projection: Option<Projection>,
     /// Draw the contour tree and the quadtree over .svg
@@ -83,6 +86,7 @@ enum Format {
     Json,
     Svg,
     Obj,
+    Geojson,
 }
 
 /// A file to write.
@@ -100,7 +104,8 @@ impl Output {
             Some("json") => Format::Json,
             Some("svg") => Format::Svg,
             Some("obj") => Format::Obj,
-            _ => return Err("its ending is none of .json, .svg, .obj".to_owned()),
+            Some("geojson") => Format::Geojson,
+            _ => return Err("its ending is none of .json, .svg, .obj, .geojson".to_owned()),
         };
         Ok(Self { path, format })
     }
@@ -211,12 +216,19 @@ impl Contour {
         match output.format {
             Format::Json => write_file(path, |out| write_contour_json(image, summary, out)),
             Format::Svg => {
-                let projector =
-                    Projector::of_image(image, projection).map_err(|error| Failure::Usage(error.to_string()))?;
+                let projector = projector(image, projection)?;
                 let options = SvgOptions { show_tree: self.show_tree, ..SvgOptions::default() };
                 write_file(path, |out| write_svg(image, &projector, &options, out))
+            }
+            Format::Geojson => {
+                let projector = projector(image, projection)?;
+                write_file(path, |out| write_geojson(image, &projector, Projector::TOLERANCE, out))
             }
             Format::Obj => write_obj(path, &visible_groups(image), image.bsp().scene()),
         }
     }
+}
+
+fn projector(image: &ContourImage, projection: Projection) -> Result<Projector, Failure> {
+    Projector::of_image(image, projection).map_err(|error| Failure::Usage(error.to_string()))
 }
