@@ -32,6 +32,7 @@ fn turned_duplicate_and_degenerate_faces_are_found() {
     assert_eq!(found.duplicates, [[PolygonId(0), PolygonId(1)]]);
     assert_eq!(found.degenerate, [PolygonId(2)]);
     assert_eq!(found.crowded_edges.len(), 1);
+    assert_eq!(found.crowded_edges[0].polygons, [0, 1, 3].map(PolygonId));
     let turned = report(&corners, &[vec![0, 1, 2, 3], vec![1, 2, 4]]);
     assert_eq!(turned.turned_edges, [[VertexId(1), VertexId(2)]]);
 }
@@ -43,8 +44,10 @@ fn t_junctions_are_told_from_cracks_and_from_corners() {
         report(&corners, &[vec![0, 1, 2], vec![3, 4, 5]]).t_junctions
     };
     let edge = [VertexId(1), VertexId(2)];
-    assert_eq!(with(1.0), [TJunction { edge, vertex: VertexId(3), exact: true }]);
-    assert_eq!(with(1.0 + 1e-12), [TJunction { edge, vertex: VertexId(3), exact: false }]);
+    assert_eq!(with(1.0), [TJunction { edge, vertex: VertexId(3), exact: true, gap: 0.0 }]);
+    let [crack] = with(1.0 + 1e-12)[..] else { panic!("one crack") };
+    assert_eq!((crack.edge, crack.vertex, crack.exact), (edge, VertexId(3), false));
+    assert!((crack.gap / (1e-12 * 0.5_f64.sqrt()) - 1.0).abs() < 1e-3, "{:e}", crack.gap);
     assert_eq!(with(1.001), []);
 }
 
