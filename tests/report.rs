@@ -1,7 +1,15 @@
-//! The report on a mesh: open edges, duplicates, T-junctions.
+//! The report on a mesh: open edges, duplicates, T-junctions, inverted faces, overlaps.
 
+mod common;
+
+use common::{Faces, Random};
+use glam::{DQuat, DVec3};
+use num_rational::BigRational;
+use num_traits::{Signed, ToPrimitive, Zero};
 use nusselt::samples::{Kind, cornell_box, generate};
-use nusselt::scene::{Material, MeshReport, PolygonId, Scene, TJunction, VertexId};
+use nusselt::scene::{FaceSpec, Fronts, Material, MeshReport, Orientation, PolygonId, Scene, TJunction, VertexId};
+use proptest::prelude::*;
+use std::time::{Duration, Instant};
 
 fn report(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> MeshReport {
     Scene::builder().mesh(vertices, faces, Material::new("m")).build().expect("sound").report()
@@ -32,6 +40,7 @@ fn turned_duplicate_and_degenerate_faces_are_found() {
     assert_eq!(found.duplicates, [[PolygonId(0), PolygonId(1)]]);
     assert_eq!(found.degenerate, [PolygonId(2)]);
     assert_eq!(found.crowded_edges.len(), 1);
+    assert_eq!(found.crowded_edges[0].polygons, [0, 1, 3].map(PolygonId));
     let turned = report(&corners, &[vec![0, 1, 2, 3], vec![1, 2, 4]]);
     assert_eq!(turned.turned_edges, [[VertexId(1), VertexId(2)]]);
 }
@@ -43,8 +52,10 @@ fn t_junctions_are_told_from_cracks_and_from_corners() {
         report(&corners, &[vec![0, 1, 2], vec![3, 4, 5]]).t_junctions
     };
     let edge = [VertexId(1), VertexId(2)];
-    assert_eq!(with(1.0), [TJunction { edge, vertex: VertexId(3), exact: true }]);
-    assert_eq!(with(1.0 + 1e-12), [TJunction { edge, vertex: VertexId(3), exact: false }]);
+    assert_eq!(with(1.0), [TJunction { edge, vertex: VertexId(3), exact: true, gap: 0.0 }]);
+    let [crack] = with(1.0 + 1e-12)[..] else { panic!("one crack") };
+    assert_eq!((crack.edge, crack.vertex, crack.exact), (edge, VertexId(3), false));
+    assert!((crack.gap / (1e-12 * 0.5_f64.sqrt()) - 1.0).abs() < 1e-3, "{:e}", crack.gap);
     assert_eq!(with(1.001), []);
 }
 
@@ -67,4 +78,330 @@ fn sizes_of_all_kinds_are_taken() {
         let scaled = corners.map(|p| p.map(|x| x * size));
         assert_eq!(report(&scaled, &[vec![0, 1, 2], vec![3, 4, 5]]).t_junctions.len(), 1, "{size:e}");
     }
+}
+
+/// The exact area that two triangles in the plane z = 0 share, doubled: clipping with rational numbers.
+fn shared(a: &[[i64; 2]; 3], b: &[[i64; 2]; 3]) -> BigRational {
+    let exact = |p: [i64; 2]| p.map(|x| BigRational::from_integer(x.into()));
+    let ccw = |t: &[[i64; 2]; 3]| {
+        let mut t = t.map(exact).to_vec();
+        if twice(&t).is_negative() {
+            t.reverse();
+        }
+        t
+    };
+    let (mut ring, window) = (ccw(a), ccw(b));
+    for (k, from) in window.iter().enumerate() {
+        let to = &window[(k + 1) % 3];
+        let height =
+            |p: &[BigRational; 2]| (&to[0] - &from[0]) * (&p[1] - &from[1]) - (&to[1] - &from[1]) * (&p[0] - &from[0]);
+        let mut kept = Vec::new();
+        for (j, p) in ring.iter().enumerate() {
+            let q = &ring[(j + 1) % ring.len()];
+            let (here, there) = (height(p), height(q));
+            if !here.is_negative() {
+                kept.push(p.clone());
+            }
+            if here.is_negative() != there.is_negative() {
+                let t = &here / (&here - &there);
+                kept.push([0, 1].map(|i| &p[i] + (&q[i] - &p[i]) * &t));
+            }
+        }
+        ring = kept;
+    }
+    twice(&ring)
+}
+
+fn twice(ring: &[[BigRational; 2]]) -> BigRational {
+    ring.iter().zip(ring.iter().cycle().skip(1)).map(|(p, q)| &p[0] * &q[1] - &p[1] * &q[0]).sum()
+}
+
+proptest! {
+    #[test]
+    fn overlaps_are_those_of_rational_arithmetic(
+        triangles in prop::collection::vec([[-4i64..5, -4i64..5], [-4..5, -4..5], [-4..5, -4..5]], 2..8),
+        plane in 0usize..3,
+    ) {
+        let exact = |t: &[[i64; 2]; 3]| t.map(|p| p.map(|x| BigRational::from_integer(x.into())));
+        // Into the plane z = 0, a slanted one, and one across x.
+        let lift = |[x, y]: [i64; 2]| match plane {
+            0 => [x, y, 0],
+            1 => [x, y, 2 * x - 3 * y + 1],
+            _ => [3, x, y],
+        }
+        .map(|x| x as f64);
+        let stretch = if plane == 1 { 14f64.sqrt() } else { 1.0 };
+        let mut vertices = Vec::new();
+        let mut faces = Vec::new();
+        for triangle in &triangles {
+            faces.push((vertices.len()..vertices.len() + 3).collect::<Vec<_>>());
+            vertices.extend(triangle.map(lift));
+        }
+        let found = report(&vertices, &faces);
+        prop_assert!(found.all_overlaps);
+        let mut expected = Vec::new();
+        for (b, second) in triangles.iter().enumerate() {
+            for (a, first) in triangles[..b].iter().enumerate() {
+                let both = [first, second].map(|t| twice(&exact(t)));
+                let area = shared(first, second);
+                if area.is_positive() && both.iter().all(|twice| !twice.is_zero()) {
+                    let opposed = both[0].is_negative() != both[1].is_negative();
+                    let area = area.to_f64().expect("small") * 0.5 * stretch;
+                    expected.push(([a, b].map(|k| PolygonId(k as u32)), opposed, area));
+                }
+            }
+        }
+        expected.sort_by_key(|overlap| overlap.0);
+        prop_assert_eq!(found.overlaps.len(), expected.len());
+        for (overlap, (polygons, opposed, area)) in found.overlaps.iter().zip(expected) {
+            prop_assert_eq!((overlap.polygons, overlap.opposed), (polygons, opposed));
+            prop_assert!((overlap.area - area).abs() <= 1e-12 * (1.0 + area), "{} {area}", overlap.area);
+        }
+    }
+
+    #[test]
+    fn the_order_of_the_faces_does_not_matter(seed: u64) {
+        let mut random = Random(seed);
+        // Few positions, so that there is much of everything; quads, so that some are bent.
+        let vertices: Vec<_> = (0..12).map(|_| random.in_cube(1.4).round().to_array()).collect();
+        let mut faces = Vec::new();
+        for _ in 0..14 {
+            let face: Vec<_> = (0..3 + random.below(2)).map(|_| random.below(12)).collect();
+            if Scene::builder().mesh(&vertices, std::slice::from_ref(&face), Material::new("m")).build().is_ok() {
+                faces.push(face);
+            }
+        }
+        let mut order: Vec<usize> = (0..faces.len()).collect();
+        for k in (1..order.len()).rev() {
+            order.swap(k, random.below(k + 1));
+        }
+        let shuffled: Vec<_> = order.iter().map(|&k| faces[k].clone()).collect();
+        let back = |id: PolygonId| PolygonId(order[id.index()] as u32);
+        let (plain, other) = (report(&vertices, &faces), report(&vertices, &shuffled));
+
+        let edges = |report: &MeshReport| report.open_edges.iter().map(|open| (open.edge, open.length)).collect::<Vec<_>>();
+        prop_assert_eq!(edges(&plain), edges(&other));
+        prop_assert_eq!(&plain.turned_edges, &other.turned_edges);
+        prop_assert_eq!(&plain.t_junctions, &other.t_junctions);
+        prop_assert_eq!(plain.duplicates.len(), other.duplicates.len());
+        let sorted = |ids: &mut dyn Iterator<Item = PolygonId>| { let mut ids: Vec<_> = ids.collect(); ids.sort(); ids };
+        prop_assert_eq!(&plain.degenerate, &sorted(&mut other.degenerate.iter().map(|&id| back(id))));
+        prop_assert_eq!(&plain.inverted, &sorted(&mut other.inverted.iter().map(|&id| back(id))));
+        let mut bent: Vec<_> = other.non_planar.iter().map(|face| (back(face.polygon), face.deviation)).collect();
+        bent.sort_by_key(|face| face.0);
+        let plain_bent: Vec<_> = plain.non_planar.iter().map(|face| (face.polygon, face.deviation)).collect();
+        prop_assert_eq!(plain_bent, bent);
+        let crowded = |report: &MeshReport, back: &dyn Fn(PolygonId) -> PolygonId| -> Vec<_> {
+            report.crowded_edges.iter().map(|e| (e.edge, sorted(&mut e.polygons.iter().map(|&id| back(id))))).collect()
+        };
+        prop_assert_eq!(crowded(&plain, &|id| id), crowded(&other, &back));
+        let overlaps = |report: &MeshReport, back: &dyn Fn(PolygonId) -> PolygonId| -> Vec<_> {
+            let mut pairs: Vec<_> = report.overlaps.iter().map(|overlap| {
+                let mut polygons = overlap.polygons.map(back);
+                polygons.sort();
+                (polygons, (overlap.area * 1e9).round())
+            }).collect();
+            pairs.sort_by_key(|pair| pair.0);
+            pairs
+        };
+        prop_assert_eq!(overlaps(&plain, &|id| id), overlaps(&other, &back));
+        let components = |report: &MeshReport| -> Vec<_> {
+            let mut all: Vec<_> = report.components.iter().map(|c| {
+                (c.polygons, c.closed, format!("{:?} {:?}", c.orientation, c.fronts))
+            }).collect();
+            all.sort();
+            all
+        };
+        prop_assert_eq!(components(&plain), components(&other));
+    }
+}
+
+/// A box without shared planes, with the faces named turned over; fronts outside.
+fn cuboid(half: DVec3, turned: &[usize]) -> MeshReport {
+    let mut faces = Faces::default();
+    faces.cuboid(DVec3::new(3.0, 1.0, -2.0), half, DQuat::from_rotation_x(0.3), false);
+    for &face in turned {
+        faces.faces[face].reverse();
+    }
+    faces.build().report()
+}
+
+#[test]
+fn inverted_faces_are_the_lesser_part_by_area() {
+    let found = cuboid(DVec3::ONE, &[4]);
+    assert_eq!(found.inverted, [PolygonId(4)]);
+    assert_eq!(found.turned_edges.len(), 4);
+    assert_eq!(found.components.len(), 1);
+    assert_eq!(found.components[0].orientation, Orientation::SomeInverted);
+    assert_eq!((found.components[0].fronts, found.components[0].volume), (None, None));
+    // Of a flat box the two large faces outweigh the four others, which are turned.
+    let flat = DVec3::new(1.0, 1.0, 0.01);
+    assert_eq!(cuboid(flat, &[2, 3, 4, 5]).inverted, [2, 3, 4, 5].map(PolygonId));
+    assert_eq!(cuboid(flat, &[0, 1]).inverted, [2, 3, 4, 5].map(PolygonId));
+    // Half and half.
+    let half = cuboid(DVec3::ONE, &[0, 2, 4]);
+    assert_eq!((half.inverted.len(), half.components[0].orientation), (0, Orientation::Undecided));
+}
+
+#[test]
+fn solids_have_their_fronts_outside_and_rooms_inside() {
+    for (turned, fronts, volume) in
+        [(vec![], Fronts::Outwards, 8.0 * 0.5 * 3.0 * 2.0), ((0..6).collect(), Fronts::Inwards, -8.0 * 0.5 * 3.0 * 2.0)]
+    {
+        let found = cuboid(DVec3::new(0.5, 3.0, 2.0), &turned);
+        let [only] = found.components[..] else { panic!("one component") };
+        assert_eq!((only.first, only.polygons, only.closed), (PolygonId(0), 6, true));
+        assert_eq!((only.orientation, only.fronts), (Orientation::Consistent, Some(fronts)));
+        assert!((only.volume.expect("closed") - volume).abs() < 1e-12);
+    }
+    // A sheet with two sides: closed, and nothing inside.
+    let corners = [[0., 0., 0.], [1., 0., 0.], [1., 1., 7.], [0., 1., 7.]];
+    let sheet = report(&corners, &[vec![0, 1, 2, 3], vec![3, 2, 1, 0]]);
+    let [only] = sheet.components[..] else { panic!("one component") };
+    assert_eq!((only.closed, only.fronts, only.volume), (true, None, Some(0.0)));
+}
+
+#[test]
+fn a_moebius_strip_has_no_two_sides() {
+    let n = 12;
+    let corner = |k: usize, top: bool| {
+        let (a, b) = (std::f64::consts::TAU * k as f64 / n as f64, std::f64::consts::PI * k as f64 / n as f64);
+        let r = 2.0 + b.cos() * if top { 0.5 } else { -0.5 };
+        [r * a.cos(), r * a.sin(), b.sin() * if top { 0.5 } else { -0.5 }]
+    };
+    let vertices: Vec<_> = (0..n).flat_map(|k| [corner(k, false), corner(k, true)]).collect();
+    let faces: Vec<Vec<usize>> = (0..n)
+        .flat_map(|k| {
+            let [a, b] = [2 * k, 2 * k + 1];
+            // The last ones join the other way around.
+            let [c, d] = if k + 1 < n { [a + 2, b + 2] } else { [1, 0] };
+            [vec![a, c, b], vec![b, c, d]]
+        })
+        .collect();
+    let found = report(&vertices, &faces);
+    let [only] = found.components[..] else { panic!("one component: {:?}", found.components) };
+    assert_eq!((only.polygons, only.closed, only.orientation), (2 * n, false, Orientation::NonOrientable));
+    assert!(found.inverted.is_empty());
+}
+
+#[test]
+fn holes_may_run_either_way_without_being_turned() {
+    // A wall with a window, and a box in it whose open side is the window's rim.
+    let ring = |size: f64| [[-size, -size], [size, -size], [size, size], [-size, size]];
+    for reversed in [false, true] {
+        let mut builder = Scene::builder();
+        let (object, material) = (builder.add_object("o"), builder.add_material(Material::new("m")));
+        let add = |builder: &mut nusselt::scene::SceneBuilder, size: f64, z: f64| -> Vec<usize> {
+            ring(size).into_iter().map(|[x, y]| builder.add_vertex(DVec3::new(x, y, z))).collect()
+        };
+        let [outer, mut hole, back] = [(3.0, 0.0), (1.0, 0.0), (1.0, -1.0)].map(|(size, z)| add(&mut builder, size, z));
+        for k in 0..4 {
+            let next = (k + 1) % 4;
+            let side = vec![hole[k], hole[next], back[next], back[k]];
+            builder.add_face(FaceSpec { rings: vec![side], object, material });
+        }
+        if reversed {
+            hole.reverse();
+        }
+        builder.add_face(FaceSpec { rings: vec![outer, hole], object, material });
+        builder.add_face(FaceSpec { rings: vec![back], object, material });
+        let found = builder.build().expect("sound").report();
+        assert!(found.turned_edges.is_empty(), "reversed: {reversed}");
+        assert_eq!((found.open_edges.len(), found.components.len()), (4, 1));
+    }
+}
+
+#[test]
+fn sizes_are_in_scene_units_at_every_scale() {
+    for exponent in [-1000, -300, 0, 300, 1000] {
+        let s = 2f64.powi(exponent);
+        let corners = [[0., 0., 0.], [4., 0., 0.], [4., 4., 0.], [0., 4., 1.], [9., 9., 9.]].map(|p| p.map(|x| x * s));
+        let found = report(&corners, &[vec![0, 1, 2, 3]]);
+        let [bent] = found.non_planar[..] else { panic!("one") };
+        // The area normal is (2, -2, 16) up to scale: heights 0, 8, 0, 8 over its length.
+        let expected = 4.0 / 264f64.sqrt();
+        assert!((bent.deviation / s - expected).abs() < 1e-14, "2^{exponent}: {}", bent.deviation / s);
+        let lengths: Vec<_> = found.open_edges.iter().map(|open| open.length / s).collect();
+        for (length, expected) in lengths.iter().zip([4.0, 17f64.sqrt(), 4.0, 17f64.sqrt()]) {
+            assert!((length - expected).abs() < 1e-14, "2^{exponent}: {lengths:?}");
+        }
+    }
+}
+
+#[test]
+fn overlaps_have_areas_and_facings_and_touching_is_none() {
+    let corners = [
+        [0., 0., 1.],
+        [4., 0., 1.],
+        [4., 4., 1.],
+        [0., 4., 1.],
+        [3., 3., 1.],
+        [6., 3., 1.],
+        [6., 6., 1.],
+        [3., 6., 1.],
+        [4., -4., 1.],
+        [8., 0., 1.],
+    ];
+    // An L whose inner corner holds the square, a square across its corner from below, and one that touches.
+    let found = report(&corners, &[vec![0, 1, 2, 3], vec![7, 6, 5, 4], vec![1, 9, 8]]);
+    let [overlap] = found.overlaps[..] else { panic!("{:?}", found.overlaps) };
+    assert_eq!((overlap.polygons, overlap.opposed), ([0, 1].map(PolygonId), true));
+    assert!((overlap.area - 1.0).abs() < 1e-15);
+}
+
+#[test]
+fn concave_and_bent_polygons_overlap_once_each() {
+    // Two combs pushed into each other from opposite sides: many pieces, one pair.
+    let comb = |flip: bool| -> Vec<[f64; 3]> {
+        let mut ring = vec![[0., 0.], [9., 0.]];
+        for k in (0..5).rev() {
+            ring.extend([[2.0 * k as f64 + 1.0, 5.0], [2.0 * k as f64, 5.0], [2.0 * k as f64, 2.0]]);
+            if k > 0 {
+                ring.push([2.0 * k as f64 - 1.0, 2.0]);
+            } else {
+                ring.pop();
+            }
+        }
+        ring.into_iter().map(|[x, y]: [f64; 2]| if flip { [x, 6.5 - y, 0.0] } else { [x, y, 0.0] }).collect()
+    };
+    let (first, second) = (comb(false), comb(true));
+    let n = first.len();
+    let vertices: Vec<_> = first.into_iter().chain(second).collect();
+    let found = report(&vertices, &[(0..n).collect(), (n..2 * n).collect()]);
+    let [overlap] = found.overlaps[..] else { panic!("{:?}", found.overlaps) };
+    // The teeth lie on each other for 3.5 of their length, five of width 1; between them the backs do not reach.
+    assert!(overlap.opposed);
+    assert!((overlap.area - 5.0 * 3.5).abs() < 1e-12, "{}", overlap.area);
+}
+
+#[test]
+fn large_scenes_are_looked_over_in_a_few_seconds() {
+    for kind in Kind::ALL {
+        let scene = generate(kind, 50_000, 3).expect("enough polygons").to_builder().build().expect("sound");
+        let start = Instant::now();
+        let found = scene.report();
+        assert!(start.elapsed() < Duration::from_secs(60), "{kind}: {:?}", start.elapsed());
+        assert!(found.all_overlaps && found.all_t_junctions);
+        // Boxes side by side share edges in the office.
+        assert!(found.components.iter().all(|c| c.closed) || !found.crowded_edges.is_empty(), "{kind}");
+        assert!(found.components.iter().all(|c| c.closed == c.fronts.is_some()), "{kind}");
+        let inwards = found.components.iter().filter(|c| c.fronts == Some(Fronts::Inwards)).count();
+        assert_eq!(inwards, 1, "{kind}: the shell");
+    }
+}
+
+#[test]
+fn heaps_on_one_spot_are_given_up_and_said_to_be() {
+    // Slanted triangles all through each other: nearly every box meets every other one.
+    let mut random = Random(8);
+    let n = 15_000;
+    let vertices: Vec<_> = (0..3 * n).map(|_| random.in_cube(1.0).to_array()).collect();
+    let faces: Vec<_> = (0..n).map(|k| vec![3 * k, 3 * k + 1, 3 * k + 2]).collect();
+    assert!(!report(&vertices, &faces).all_overlaps);
+    // Squares all on each other.
+    let square = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
+    let found = report(&square, &vec![vec![0, 1, 2, 3]; 1000]);
+    assert!(!found.all_overlaps);
+    assert_eq!(found.overlaps.len(), 100_000);
+    assert_eq!(found.duplicates.len(), 999);
 }

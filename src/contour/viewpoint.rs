@@ -25,8 +25,8 @@ pub enum SurfaceError {
         /// How many polygons there are.
         count: usize,
     },
-    /// The polygon has no area.
-    #[error("polygon {polygon} has no area: one cannot stand on it")]
+    /// The polygon has no area, or was dropped.
+    #[error("polygon {polygon} has no area, or was dropped: one cannot stand on it")]
     NoArea {
         /// The polygon.
         polygon: PolygonId,

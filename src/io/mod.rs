@@ -53,7 +53,10 @@ pub struct Loaded {
 
 /// How a scene is read.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct ReadOptions {}
+pub struct ReadOptions {
+    /// What becomes of broken faces. What it changed is in [`Scene::repairs`].
+    pub repair: crate::scene::Repair,
+}
 
 type Reader = fn(&Path, &ReadOptions) -> Result<Loaded, ReadError>;
 

@@ -38,7 +38,7 @@ impl Assembly {
     ) -> Result<(), SceneProblem> {
         let polygon = PolygonId(next_id(self.data.polygons.len(), "polygons")?);
         let shape = facets.shape;
-        debug_assert!(shape == Shape::Degenerate || !facets.outlines.is_empty());
+        debug_assert!(matches!(shape, Shape::Degenerate | Shape::Dropped) || !facets.outlines.is_empty());
         let first = next_id(self.data.pieces.len(), "pieces")?;
         let shared = facets.plane.map(|corners| self.plane(corners)).transpose()?;
         for ring in facets.outlines {
@@ -99,6 +99,35 @@ impl Assembly {
         });
         let facing = if orientation(triangle, axis).is_positive() { Side::Front } else { Side::Back };
         Ok((id, facing))
+    }
+}
+
+impl Data {
+    /// Leaves out the vertices that no polygon names, and numbers the others anew, in the same order.
+    pub(super) fn leave_out_unused_vertices(&mut self) {
+        let mut used = vec![false; self.vertices.len()];
+        for vertex in self.polygons.iter().flat_map(|polygon| &polygon.rings).flatten() {
+            used[vertex.index()] = true;
+        }
+        let mut ids = Vec::with_capacity(used.len());
+        let mut kept = Vec::new();
+        for (&position, used) in self.vertices.iter().zip(used) {
+            // What is not used has no id that counts.
+            ids.push(VertexId(kept.len() as u32));
+            if used {
+                kept.push(position);
+            }
+        }
+        self.vertices = kept;
+        let rings = self.polygons.iter_mut().flat_map(|polygon| &mut polygon.rings).flatten();
+        let planes = self.planes.iter_mut().filter_map(|plane| match plane {
+            SupportingPlane::Points(points) => Some(points),
+            SupportingPlane::Axis { .. } => None,
+        });
+        let vertices = rings.chain(&mut self.piece_vertices).chain(self.edges.iter_mut().flatten());
+        for vertex in vertices.chain(planes.flatten()) {
+            *vertex = ids[vertex.index()];
+        }
     }
 }
 

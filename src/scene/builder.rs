@@ -1,11 +1,14 @@
 //! Building a scene: collects everything, checks everything, reports every problem at once.
 
 use super::assemble::{Assembly, next_id};
-use super::facets::facets;
-use super::triangulate::{Fault, RANGE};
+use super::facets::Facets;
+use super::flat::distance;
+use super::judge::{Broken, Judge};
+use super::repair::{note_welding, snap};
 use super::validate::{Counts, check_face, check_materials, check_vertices};
 use super::weld::{Welded, merged, weld};
-use super::{Data, Material, MaterialId, ObjectId, PolygonId, Scene, SceneError, SceneProblem};
+use super::{Data, DropCause, Dropped, Material, MaterialId, ObjectId, OrDrop, PolygonId, Repair, Repairs};
+use super::{Scene, SceneError, SceneProblem};
 use glam::DVec3;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -52,6 +55,7 @@ pub struct SceneBuilder {
     objects: Vec<String>,
     object_ids: HashMap<String, ObjectId>,
     materials: Vec<Material>,
+    repair: Repair,
 }
 
 impl SceneBuilder {
@@ -97,18 +101,42 @@ impl SceneBuilder {
         self
     }
 
+    /// Chooses what becomes of broken faces.
+    ///
+    /// ```
+    /// use nusselt::scene::{Material, OrDrop, Repair, Scene, Shape};
+    ///
+    /// // A bow tie, and a square whose last corner has come off by a hair.
+    /// let vertices = [[0., 0., 0.], [1., 1., 0.], [1., 0., 0.], [0., 1., 0.], [1e-6, 0., 0.]];
+    /// let faces = [vec![0, 1, 2, 3], vec![4, 2, 1, 3]];
+    /// let repair = Repair { self_crossing: OrDrop::Drop, weld: Some(1e-3), ..Repair::default() };
+    /// let scene = Scene::builder().repair(repair).mesh(&vertices, &faces, Material::new("grey")).build()?;
+    /// assert_eq!(scene.polygon(scene.repairs().dropped[0].polygon).shape(), Shape::Dropped);
+    /// assert_eq!(scene.repairs().moved[0].vertex, 4);
+    /// assert_eq!(scene.polygon_count(), 2);
+    /// # Ok::<(), nusselt::scene::SceneError>(())
+    /// ```
+    #[must_use]
+    pub fn repair(mut self, repair: Repair) -> Self {
+        self.repair = repair;
+        self
+    }
+
     /// Checks everything and builds the scene.
     ///
     /// Vertices with exactly equal coordinates become one, those that no face names are left out.
     /// Exactly planar and convex faces stay whole (those with more than 64 vertices are cut by diagonals),
-    /// others are triangulated on their own vertices; faces without area stay as polygons without pieces. Expected time n log n in the size of the input,
-    /// n log^2 n for concave rings.
+    /// others are triangulated on their own vertices; faces without area stay as polygons without pieces; all else
+    /// that is not as it should be is a problem. A [`Repair`] can choose otherwise. Expected time n log n in the
+    /// size of the input, n log^2 n for concave rings.
     ///
     /// # Errors
     /// All problems of the input at once.
     pub fn build(self) -> Result<Scene, SceneError> {
         let mut problems = Vec::new();
-        check_vertices(&self.vertices, &mut problems);
+        if self.repair.malformed == OrDrop::Reject {
+            check_vertices(&self.vertices, &mut problems);
+        }
         let mut data = self.assemble(&mut problems);
         check_materials(&self.materials, &mut problems);
         if !problems.is_empty() {
@@ -119,50 +147,106 @@ impl SceneBuilder {
         Ok(Scene { data: Arc::new(data) })
     }
 
-    /// Builds all sound polygons and notes what is wrong with the others.
+    /// Builds all sound polygons, drops those that are to be dropped, and notes what is wrong with the others.
     fn assemble(&self, problems: &mut Vec<SceneProblem>) -> Data {
-        let counts =
-            Counts { vertices: self.vertices.len(), objects: self.objects.len(), materials: self.materials.len() };
-        if let Err(problem) = next_id(counts.vertices, "vertices") {
+        let tolerance = self.repair.weld.unwrap_or(0.0);
+        if !(tolerance.is_finite() && tolerance >= 0.0) {
+            problems.push(SceneProblem::BadTolerance { tolerance });
+            return Data::default();
+        }
+        if let Err(problem) = next_id(self.vertices.len(), "vertices") {
             problems.push(problem);
             return Data::default();
         }
-        let mut used = vec![false; counts.vertices];
-        for &vertex in self.faces.iter().flat_map(|face| &face.rings).flatten() {
-            if let Some(used) = used.get_mut(vertex) {
-                *used = self.vertices[vertex].is_finite();
-            }
-        }
-        let Welded { vertices, ids } = weld(&self.vertices, &used);
+        let used = self.used_vertices();
+        let (positions, moved) = snap(&self.vertices, &used, tolerance);
+        let Welded { vertices, ids } = weld(&positions, &used);
         let mut assembly = Assembly::new(vertices);
+        let mut repairs = Repairs { moved, ..Repairs::default() };
+        let mut judge = Judge::new(&self.repair);
         for (index, face) in self.faces.iter().enumerate() {
-            let result = next_id(index, "polygons").and_then(|index| {
-                let polygon = PolygonId(index);
-                let is_sound = check_face(polygon, face, counts, problems);
-                if !is_sound || face.rings.iter().flatten().any(|&vertex| ids[vertex].is_none()) {
-                    return Ok(());
-                }
+            let result = next_id(index, "polygons").map(PolygonId).and_then(|polygon| {
+                let Some(verdict) = self.check(polygon, face, problems) else { return Ok(()) };
                 let rings: Vec<_> = face.rings.iter().map(|ring| merged(ring, &ids)).collect();
-                match facets(&rings, &assembly.data.vertices) {
-                    Ok(facets) => assembly.add_polygon(face, rings, facets)?,
-                    Err(fault) => problems.push(fault_of(polygon, fault)),
+                match verdict.and_then(|()| judge.judge(polygon, &rings, &assembly.data.vertices)) {
+                    Ok(facets) => {
+                        if !repairs.moved.is_empty() {
+                            note_welding(polygon, face, facets.shape, [&self.vertices, &positions], &mut repairs);
+                        }
+                        assembly.add_polygon(face, rings, facets)
+                    }
+                    Err(Broken { problem, cause: None }) => {
+                        problems.push(problem);
+                        Ok(())
+                    }
+                    Err(Broken { problem, cause: Some(cause) }) => {
+                        repairs.dropped.push(Dropped { polygon, cause, problem, size: self.size(face) });
+                        assembly.add_polygon(face, Vec::new(), Facets::dropped())
+                    }
                 }
-                Ok(())
             });
             if let Err(too_large) = result {
                 problems.push(too_large);
                 break;
             }
         }
-        assembly.data
+        let mut data = assembly.data;
+        if !repairs.dropped.is_empty() {
+            data.leave_out_unused_vertices();
+        }
+        data.repairs = repairs;
+        data
     }
-}
 
-fn fault_of(polygon: PolygonId, fault: Fault) -> SceneProblem {
-    match fault {
-        Fault::Crossing => SceneProblem::SelfCrossing { polygon },
-        Fault::HoleOutside => SceneProblem::HoleOutside { polygon },
-        Fault::TooMuchWork => SceneProblem::TooMuchWork { polygon },
-        Fault::OutOfRange => SceneProblem::OutOfRange { polygon, limit: RANGE },
+    /// The finite vertices that faces name. With a repair, malformed faces do not count: they will be dropped.
+    fn used_vertices(&self) -> Vec<bool> {
+        let is_fine = |&vertex: &usize| self.vertices.get(vertex).is_some_and(|p| p.is_finite());
+        let mut used = vec![false; self.vertices.len()];
+        for face in &self.faces {
+            let is_whole = || face.rings.iter().all(|ring| ring.len() >= 3 && ring.iter().all(is_fine));
+            if self.repair.malformed == OrDrop::Reject || is_whole() {
+                for &vertex in face.rings.iter().flatten().filter(|vertex| is_fine(vertex)) {
+                    used[vertex] = true;
+                }
+            }
+        }
+        used
+    }
+
+    /// Checks what a face names. `None` if what is wrong with it is noted already.
+    fn check(
+        &self,
+        polygon: PolygonId,
+        face: &FaceSpec,
+        problems: &mut Vec<SceneProblem>,
+    ) -> Option<Result<(), Broken>> {
+        let counts =
+            Counts { vertices: self.vertices.len(), objects: self.objects.len(), materials: self.materials.len() };
+        let mut found = Vec::new();
+        let is_sound = check_face(polygon, face, counts, &mut found);
+        let infinite = face.rings.iter().flatten().find(|&&v| self.vertices.get(v).is_some_and(|p| !p.is_finite()));
+        if self.repair.malformed == OrDrop::Reject || (is_sound && infinite.is_none()) {
+            problems.extend(found);
+            return (is_sound && infinite.is_none()).then_some(Ok(()));
+        }
+        // Names of objects and materials are no matter of the face's shape: they are problems all the same.
+        let is_shape = |problem: &SceneProblem| {
+            matches!(problem, SceneProblem::TooFewVertices { .. } | SceneProblem::UnknownVertex { .. })
+        };
+        let (shape, names): (Vec<_>, Vec<_>) = found.into_iter().partition(is_shape);
+        problems.extend(names);
+        let infinite = infinite.map(|&vertex| SceneProblem::NotFinite { vertex });
+        let problem = shape.into_iter().next().or(infinite)?;
+        Some(Err(Broken { problem, cause: Some(DropCause::Malformed) }))
+    }
+
+    /// The diagonal of the box around the vertices of a face that exist and are finite.
+    fn size(&self, face: &FaceSpec) -> f64 {
+        let positions = face.rings.iter().flatten().filter_map(|&v| self.vertices.get(v).filter(|p| p.is_finite()));
+        let bounds = positions.fold(None, |bounds, &p| {
+            let (low, high) = bounds.unwrap_or((p, p));
+            Some((p.min(low), p.max(high)))
+        });
+        bounds.map_or(0.0, |(low, high)| distance(low, high))
     }
 }

@@ -23,6 +23,11 @@ impl Facets {
     fn none() -> Self {
         Self { shape: Shape::Degenerate, outlines: Vec::new(), plane: None }
     }
+
+    /// What is left of a polygon that is dropped.
+    pub(super) fn dropped() -> Self {
+        Self { shape: Shape::Dropped, ..Self::none() }
+    }
 }
 
 /// Cuts a polygon into facets. No ring may name one vertex twice in a row.

@@ -50,6 +50,19 @@ pub(super) fn unit_scale(points: impl IntoIterator<Item = DVec3>) -> f64 {
     2.0_f64.powi((-exponent).clamp(-1020, 1020))
 }
 
+/// A length that was taken of points multiplied by a scale: without it, the largest f64 if it is longer than that.
+pub(super) fn unscaled(length: f64, scale: f64) -> f64 {
+    (length / scale).min(f64::MAX)
+}
+
+/// The distance of two points, rounded; the largest f64 if it is longer than that.
+pub(super) fn distance(a: DVec3, b: DVec3) -> f64 {
+    // Halves have finite differences, and the scale is taken of those, so that short ones do not vanish.
+    let step = a * 0.5 - b * 0.5;
+    let scale = unit_scale([step]);
+    unscaled((step * scale).length(), scale * 0.5)
+}
+
 /// Three vertices that span a large triangle, in ascending order of their places; `None` if all
 /// points are collinear.
 ///
@@ -66,6 +79,13 @@ pub(super) fn spread(points: &[DVec3]) -> Option<[usize; 3]> {
     let is_off = |k: &usize| !collinear([first, points[b], points[*k]]);
     let c = Some(c).filter(is_off).or_else(|| (0..points.len()).find(is_off))?;
     Some([0, b.min(c), b.max(c)])
+}
+
+/// True if all points lie in one plane or on one line. Exact; linear time.
+pub(super) fn is_planar(points: &[DVec3]) -> bool {
+    let Some(corners) = spread(points) else { return true };
+    let [a, b, c] = corners.map(|k| points[k]);
+    points.iter().enumerate().all(|(k, &p)| corners.contains(&k) || orient3d(a, b, c, p).is_zero())
 }
 
 /// The place of the first largest number.

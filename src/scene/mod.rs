@@ -2,14 +2,18 @@
 //!
 //! A polygon of the input keeps its number for good. Inside it is one or more *pieces*: convex,
 //! exactly planar facets. A polygon that is exactly planar and convex is one piece, or a few
-//! if it has more than 64 vertices; any other is triangulated; a polygon without area has none.
+//! if it has more than 64 vertices; any other is triangulated; a polygon without area has none, nor has one that a
+//! [`Repair`] dropped.
 
 mod assemble;
 mod builder;
+mod corners;
 mod facets;
 mod flat;
+mod judge;
 mod material;
 mod problem;
+mod repair;
 mod report;
 mod splitter;
 mod triangulate;
@@ -19,7 +23,13 @@ mod weld;
 pub use builder::{FaceSpec, SceneBuilder};
 pub use material::Material;
 pub use problem::{SceneError, SceneProblem};
-pub use report::{MeshReport, TJunction};
+pub use repair::{
+    DropCause, Dropped, DuplicatePolicy, MovedVertex, NonPlanarPolicy, OrDrop, Repair, RepairSpecError, Repairs,
+    ZeroAreaPolicy,
+};
+pub use report::{
+    Component, CoplanarOverlap, CrowdedEdge, Fronts, MeshReport, NonPlanarPolygon, OpenEdge, Orientation, TJunction,
+};
 pub use splitter::Splitter;
 
 use glam::DVec3;
@@ -149,6 +159,8 @@ pub enum Shape {
     NonPlanar,
     /// No area: no piece; hides nothing.
     Degenerate,
+    /// Dropped by a [`Repair`]: neither rings nor pieces; hides nothing.
+    Dropped,
 }
 
 #[derive(Clone, Debug)]
@@ -183,6 +195,7 @@ struct Data {
     piece_edges: Vec<EdgeId>,
     objects: Vec<String>,
     materials: Vec<Material>,
+    repairs: Repairs,
 }
 
 /// A checked, immutable scene. Cloning it is cheap: clones share their data.
@@ -217,7 +230,7 @@ impl Scene {
         &self.data.planes
     }
 
-    /// The number of polygons, those without area included.
+    /// The number of polygons, those without area and those dropped included.
     pub fn polygon_count(&self) -> usize {
         self.data.polygons.len()
     }
@@ -261,6 +274,11 @@ impl Scene {
     /// The materials.
     pub fn materials(&self) -> &[Material] {
         &self.data.materials
+    }
+
+    /// What the builder's [`Repair`] changed; empty by default.
+    pub fn repairs(&self) -> &Repairs {
+        &self.data.repairs
     }
 
     /// The smallest axis-aligned box around all vertices, as its least and greatest corner; `None`
@@ -316,17 +334,18 @@ impl<'a> PolygonRef<'a> {
         &self.scene.data.materials[self.polygon.material.index()]
     }
 
-    /// Whether it is whole, triangulated or without area.
+    /// Whether it is whole, triangulated, without area or dropped.
     pub fn shape(self) -> Shape {
         self.polygon.shape
     }
 
-    /// Its rings: the outer one first, then the holes. Consecutive equal vertices are merged.
+    /// Its rings: the outer one first, then the holes; none if it was dropped.
+    /// Consecutive equal vertices are merged.
     pub fn rings(self) -> &'a [Vec<VertexId>] {
         &self.polygon.rings
     }
 
-    /// Its pieces; none if it has no area.
+    /// Its pieces; none if it has no area or was dropped.
     pub fn pieces(self) -> impl ExactSizeIterator<Item = PieceRef<'a>> {
         let scene = self.scene;
         self.polygon.pieces.clone().map(move |k| scene.piece(PieceId(k)))

@@ -78,6 +78,32 @@ pub enum SceneProblem {
         /// The largest ratio of coordinates that is taken, as an exponent of 2.
         limit: u32,
     },
+    /// A polygon that is not exactly planar, which [`Repair::non_planar`](super::Repair::non_planar) rejects.
+    #[error("polygon {polygon} is not exactly planar; split it, or have it triangulated")]
+    NonPlanar {
+        /// The polygon.
+        polygon: PolygonId,
+    },
+    /// A polygon without area, which [`Repair::zero_area`](super::Repair::zero_area) rejects.
+    #[error("polygon {polygon} has no area; remove it, or have it kept")]
+    ZeroArea {
+        /// The polygon.
+        polygon: PolygonId,
+    },
+    /// A polygon with the same corners as one before, which [`Repair::duplicates`](super::Repair::duplicates) rejects.
+    #[error("polygon {polygon} has the same corners as polygon {first}; remove it, or have it kept or dropped")]
+    Duplicate {
+        /// The polygon.
+        polygon: PolygonId,
+        /// The one before.
+        first: PolygonId,
+    },
+    /// A tolerance for [`Repair::weld`](super::Repair::weld) that is negative, infinite or not a number.
+    #[error("{tolerance} is no tolerance to weld vertices within; it takes a finite distance of at least 0")]
+    BadTolerance {
+        /// The tolerance.
+        tolerance: f64,
+    },
     /// A number of a material is infinite, not a number, or negative.
     #[error("material {material} ({name}) has a reflectance, exponent or emission that is negative or not finite")]
     BadMaterial {
@@ -107,6 +133,9 @@ impl SceneProblem {
             | Self::SelfCrossing { polygon }
             | Self::HoleOutside { polygon }
             | Self::TooMuchWork { polygon }
+            | Self::NonPlanar { polygon }
+            | Self::ZeroArea { polygon }
+            | Self::Duplicate { polygon, .. }
             | Self::OutOfRange { polygon, .. } => Some(polygon),
             _ => None,
         }

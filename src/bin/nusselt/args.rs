@@ -2,7 +2,8 @@
 
 use crate::failure::Failure;
 use glam::DVec3;
-use nusselt::scene::{PolygonId, Side};
+use nusselt::io::ReadOptions;
+use nusselt::scene::{PolygonId, Repair, RepairSpecError, Side};
 use nusselt::verify::Arithmetic;
 use std::num::NonZeroUsize;
 
@@ -36,6 +37,28 @@ impl Common {
             let _ = writeln!(std::io::stderr(), "nusselt: warning: {warning}");
         }
     }
+}
+
+/// How scenes are read.
+#[derive(clap::Args)]
+pub(crate) struct Loading {
+    /// What becomes of broken faces, as a list such as non-planar=drop,weld=0.001 of:
+    /// non-planar=triangulate|reject|drop, zero-area=keep|reject, self-crossing=reject|drop,
+    /// malformed=reject|drop (bad indices, numbers that are not finite), duplicate=keep|reject|drop (the later one),
+    /// weld=T (moves vertices onto others nearer than T, in scene units). The first of each is the default. What is
+    /// dropped keeps its number; what is changed is said, and listed by nusselt info
+    #[arg(long, value_name = "SPEC", default_value_t, value_parser = parse_repair, hide_default_value = true)]
+    pub(crate) repair: Repair,
+}
+
+impl Loading {
+    pub(crate) fn options(&self) -> ReadOptions {
+        ReadOptions { repair: self.repair }
+    }
+}
+
+fn parse_repair(text: &str) -> Result<Repair, String> {
+    text.parse().map_err(|error: RepairSpecError| error.to_string())
 }
 
 /// How the 3D BSP is built.

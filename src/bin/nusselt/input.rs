@@ -1,10 +1,11 @@
 //! Scenes and their 3D BSPs, with the time they take.
 
-use crate::args::{Common, Order};
+use crate::args::{Common, Loading, Order};
 use crate::failure::Failure;
 use crate::output::keep;
+use crate::repairs::changes;
 use nusselt::bsp::{BspOptions, SceneBsp};
-use nusselt::io::{ReadOptions, read_scene};
+use nusselt::io::read_scene;
 use nusselt::scene::Scene;
 use std::path::Path;
 use std::time::Instant;
@@ -13,15 +14,19 @@ use std::time::Instant;
 pub(crate) fn load<'a>(
     path: &Path,
     outputs: impl Iterator<Item = &'a Path> + Clone,
+    loading: &Loading,
     common: &Common,
 ) -> Result<(Scene, f64), Failure> {
     keep(&[path.to_owned()], outputs.clone())?;
     let start = Instant::now();
-    let loaded = read_scene(path, &ReadOptions::default()).map_err(|error| Failure::Work(error.to_string()))?;
+    let loaded = read_scene(path, &loading.options()).map_err(|error| Failure::Work(error.to_string()))?;
     let seconds = start.elapsed().as_secs_f64();
     keep(&loaded.files, outputs)?;
     for warning in &loaded.warnings {
         common.warn(warning);
+    }
+    for change in changes(loaded.scene.repairs()) {
+        common.warn(&format!("{}: {change}", path.display()));
     }
     Ok((loaded.scene, seconds))
 }

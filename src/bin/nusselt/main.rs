@@ -7,6 +7,7 @@ mod info;
 mod input;
 mod output;
 mod proof;
+mod repairs;
 mod scene;
 mod summary;
 mod verify;

@@ -1,6 +1,7 @@
 //! What summaries have in common.
 
 use serde::Serialize;
+use serde_json::{Value, json};
 use std::fmt::{Display, Write};
 
 /// Times around the work itself.
@@ -44,6 +45,21 @@ pub(crate) fn vector(v: glam::DVec3) -> String {
 /// The shortest number that reads as the same, with an exponent where it would be long otherwise.
 pub(crate) fn number(x: f64) -> String {
     if x == 0.0 || (1e-5..1e12).contains(&x.abs()) { format!("{}", x + 0.0) } else { format!("{x:e}") }
+}
+
+/// So many of each kind of thing are named, the rest is only counted.
+const NAMED: usize = 20;
+
+/// The first ones.
+pub(crate) fn named<T>(items: &[T], show: impl Fn(&T) -> String) -> String {
+    let first: Vec<_> = items.iter().take(NAMED).map(show).collect();
+    let more = if items.len() > NAMED { ", ..." } else { "" };
+    first.join(", ") + more
+}
+
+/// How many, and which the first ones are.
+pub(crate) fn counted<T>(items: &[T], show: impl Fn(&T) -> Value) -> Value {
+    json!({ "count": items.len(), "first": items.iter().take(NAMED).map(show).collect::<Vec<_>>() })
 }
 
 /// Lines of a name and what there is to say about it.

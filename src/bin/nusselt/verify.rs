@@ -1,6 +1,6 @@
 //! `nusselt verify`: checks a kept certificate, apart from the run that made it.
 
-use crate::args::Common;
+use crate::args::{Common, Loading};
 use crate::failure::Failure;
 use crate::input::load;
 use crate::output::{print, print_json};
@@ -32,11 +32,13 @@ pub(crate) struct Verify {
     /// Use rational numbers alone: shares no predicate with what made the image, and takes about a hundred times as long
     #[arg(long)]
     rational: bool,
+    #[command(flatten)]
+    loading: Loading,
 }
 
 impl Verify {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let (scene, load_s) = load(&self.scene, std::iter::empty(), common)?;
+        let (scene, load_s) = load(&self.scene, std::iter::empty(), &self.loading, common)?;
         let start = Instant::now();
         let refused = |error: nusselt::io::CertificateError| Failure::Work(error.to_string());
         let kept = read_certificate(&self.certificate).map_err(refused)?;

@@ -5,7 +5,7 @@ use super::super::lines::{Line, is_blank, lines};
 use super::super::mtl::{self, Definition};
 use super::super::number::{self, shown};
 use super::super::{Loaded, ReadError, ReadOptions, read_regular};
-use crate::scene::{FaceSpec, Material, MaterialId, ObjectId, Scene, SceneBuilder, SceneProblem, Shape};
+use crate::scene::{FaceSpec, Material, MaterialId, ObjectId, OrDrop, Scene, SceneBuilder, SceneProblem, Shape};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
 use std::fs;
@@ -56,10 +56,10 @@ pub fn read(path: &Path, options: &ReadOptions) -> Result<Loaded, ReadError> {
 pub fn parse(
     bytes: &[u8],
     name: &str,
-    _options: &ReadOptions,
+    options: &ReadOptions,
     load: impl FnMut(&str) -> io::Result<Vec<u8>>,
 ) -> Result<Loaded, ReadError> {
-    let mut reader = Reader::new(name, load);
+    let mut reader = Reader::new(name, options, load);
     for line in lines(bytes) {
         reader.read_line(&line);
     }
@@ -78,8 +78,13 @@ struct Reader<'a, L> {
     name: &'a str,
     load: L,
     builder: SceneBuilder,
+    /// Whether malformed faces are left to the builder, which drops them.
+    drops: bool,
     vertex_count: usize,
     has_bad_vertices: bool,
+    /// If malformed faces are dropped: the first line that is none, and why, and how many there are.
+    unusable: Option<(usize, String)>,
+    unusable_count: usize,
     faces: Vec<Face>,
     object: Option<String>,
     group: Option<String>,
@@ -116,13 +121,16 @@ const WITHOUT_EFFECT: &[&str] = &[
 ];
 
 impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
-    fn new(name: &'a str, load: L) -> Self {
+    fn new(name: &'a str, options: &ReadOptions, load: L) -> Self {
         Self {
             name,
             load,
-            builder: Scene::builder(),
+            builder: Scene::builder().repair(options.repair),
+            drops: options.repair.malformed == OrDrop::Drop,
             vertex_count: 0,
             has_bad_vertices: false,
+            unusable: None,
+            unusable_count: 0,
             faces: Vec::new(),
             object: None,
             group: None,
@@ -160,16 +168,18 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
     fn read_vertex(&mut self, line: usize, rest: &str) {
         let mut tokens = rest.split(is_blank).filter(|token| !token.is_empty());
         let mut position = [0.0; 3];
-        for (k, coordinate) in position.iter_mut().enumerate() {
+        for k in 0..3 {
             let result = match tokens.next() {
                 Some(token) => number::parse(token),
                 None => Err(format!("a vertex takes 3 coordinates, but here are {k}")),
             };
             match result {
-                Ok(number) => *coordinate = number,
+                Ok(number) => position[k] = number,
                 Err(what) => {
-                    self.faults.note(self.name, Some(line), what);
-                    self.has_bad_vertices = true;
+                    self.refuse_line(line, what);
+                    // Should it not be a fault, it makes the faces that name it malformed.
+                    position = [f64::NAN; 3];
+                    self.has_bad_vertices |= !self.drops;
                     break;
                 }
             }
@@ -180,13 +190,23 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
 
     fn read_face(&mut self, line: usize, rest: &str) {
         let ring = self.ring(rest).unwrap_or_else(|what| {
-            self.faults.note(self.name, Some(line), what);
+            self.refuse_line(line, what);
             Vec::new()
         });
         let object = self.current_object();
         let material = self.material.unwrap_or_else(|| self.use_material("default"));
         self.material = Some(material);
         self.faces.push(Face { line, ring, object, material });
+    }
+
+    /// Notes a vertex or a face that cannot be read.
+    fn refuse_line(&mut self, line: usize, what: String) {
+        if self.drops {
+            self.unusable_count += 1;
+            self.unusable.get_or_insert((line, what));
+        } else {
+            self.faults.note(self.name, Some(line), what);
+        }
     }
 
     fn ring(&self, corners: &str) -> Result<Vec<usize>, String> {
@@ -295,6 +315,10 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
             }
         };
         self.warnings.extend(empty_faces(&scene, self.name, &lines));
+        if let Some((line, what)) = self.unusable {
+            let count = self.unusable_count;
+            self.warnings.push(format!("{}:{line}: {what}; {count} lines in all cannot be used", self.name));
+        }
         if scene.polygon_count() == 0 {
             self.warnings.push(format!("{}: there are no faces", self.name));
         }
@@ -359,12 +383,14 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
         let count = self.vertex_count;
         let mut lines = Vec::with_capacity(self.faces.len());
         for Face { line, mut ring, object, material } in self.faces.drain(..) {
-            if let Some(unknown) = ring.iter().find(|&&index| index >= count) {
+            if self.drops {
+                // Whatever is wrong with it, the builder finds it.
+            } else if let Some(unknown) = ring.iter().find(|&&index| index >= count) {
                 let what = format_args!("there is no vertex {}; the file has {count}", unknown + 1);
                 self.faults.note(self.name, Some(line), what);
                 ring.clear();
             }
-            if ring.is_empty() {
+            if ring.is_empty() && !self.drops {
                 if count == 0 {
                     break;
                 }

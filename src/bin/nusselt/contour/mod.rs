@@ -3,7 +3,7 @@
 mod place;
 mod report;
 
-use crate::args::{Common, Order, parse_arithmetic, parse_direction, parse_point, parse_surface};
+use crate::args::{Common, Loading, Order, parse_arithmetic, parse_direction, parse_point, parse_surface};
 use crate::failure::Failure;
 use crate::input::{build, load};
 use crate::output::{is_same_file, print, print_json, write_file, write_obj, written};
@@ -77,6 +77,8 @@ pub(crate) struct Contour {
     #[arg(long, value_name = "FILE.json", value_parser = parse_certificate)]
     certificate: Option<PathBuf>,
     #[command(flatten)]
+    loading: Loading,
+    #[command(flatten)]
     order: Order,
 }
 
@@ -126,7 +128,7 @@ impl Contour {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         let projection = self.check()?;
         let outputs = self.output.iter().map(|output| &output.path).chain(&self.certificate).map(PathBuf::as_path);
-        let (scene, load_s) = load(&self.scene, outputs, common)?;
+        let (scene, load_s) = load(&self.scene, outputs, &self.loading, common)?;
         let (viewpoint, domain) = self.stand(&scene)?;
         let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
         let start = Instant::now();
