@@ -1,6 +1,7 @@
 //! Arguments that several commands take.
 
 use glam::DVec3;
+use nusselt::io::{Origin, ReadOptions};
 use nusselt::scene::{PolygonId, Side};
 use nusselt::verify::Arithmetic;
 use std::num::NonZeroUsize;
@@ -27,6 +28,34 @@ impl Common {
             // If stderr is closed there is no one left to warn.
             let _ = writeln!(std::io::stderr(), "nusselt: warning: {warning}");
         }
+    }
+}
+
+/// How the scene is read.
+#[derive(clap::Args)]
+pub(crate) struct Reading {
+    /// Take this level of detail of city objects, like 2 or 2.2 (CityJSON) [default: the highest of each]
+    #[arg(long, value_name = "L", allow_hyphen_values = true)]
+    lod: Option<String>,
+    /// Take coordinates as they are in the reference system of the file, without its translation (local), or as the
+    /// integers that the file has (CityJSON)
+    #[arg(long, value_name = "file|local|integers", default_value = "file", value_parser = parse_origin)]
+    origin: Origin,
+}
+
+impl Reading {
+    /// The options for the reader.
+    pub(crate) fn options(&self) -> ReadOptions {
+        ReadOptions { lod: self.lod.clone(), origin: self.origin }
+    }
+}
+
+fn parse_origin(text: &str) -> Result<Origin, String> {
+    match text {
+        "file" => Ok(Origin::File),
+        "local" => Ok(Origin::Local),
+        "integers" => Ok(Origin::Integers),
+        _ => Err("there are file, local and integers".to_owned()),
     }
 }
 

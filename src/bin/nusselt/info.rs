@@ -1,6 +1,6 @@
 //! `nusselt info`: what a scene consists of, and what may be wrong with it.
 
-use crate::args::{Common, Order};
+use crate::args::{Common, Order, Reading};
 use crate::failure::Failure;
 use crate::input::{build, load};
 use crate::output::{print, print_json, write_obj};
@@ -19,8 +19,10 @@ Example: look over a room, and write the fragments of its 3D BSP
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLE)]
 pub(crate) struct Info {
-    /// The scene
+    /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON
     scene: PathBuf,
+    #[command(flatten)]
+    reading: Reading,
     /// Write the fragments into which the 3D BSP cuts the scene
     #[arg(long)]
     fragments: bool,
@@ -46,7 +48,7 @@ impl Info {
             (None, true) => return Err(Failure::Usage("--fragments takes -o FILE.obj: say where to write".to_owned())),
             (output, _) => output.as_deref(),
         };
-        let (scene, load_s) = load(&self.scene, output.into_iter(), common)?;
+        let (scene, load_s) = load(&self.scene, &self.reading, output.into_iter(), common)?;
         let report = scene.report();
         let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
         if let Some(output) = output {

@@ -1,10 +1,10 @@
 //! Scenes and their 3D BSPs, with the time they take.
 
-use crate::args::{Common, Order};
+use crate::args::{Common, Order, Reading};
 use crate::failure::Failure;
 use crate::output::keep;
 use nusselt::bsp::{BspOptions, SceneBsp};
-use nusselt::io::{ReadOptions, read_scene};
+use nusselt::io::read_scene;
 use nusselt::scene::Scene;
 use std::path::Path;
 use std::time::Instant;
@@ -12,12 +12,13 @@ use std::time::Instant;
 /// A scene from a file, and how many seconds reading took. No output may replace what it is read from.
 pub(crate) fn load<'a>(
     path: &Path,
+    reading: &Reading,
     outputs: impl Iterator<Item = &'a Path> + Clone,
     common: &Common,
 ) -> Result<(Scene, f64), Failure> {
     keep(&[path.to_owned()], outputs.clone())?;
     let start = Instant::now();
-    let loaded = read_scene(path, &ReadOptions::default()).map_err(|error| Failure::Work(error.to_string()))?;
+    let loaded = read_scene(path, &reading.options()).map_err(|error| Failure::Work(error.to_string()))?;
     let seconds = start.elapsed().as_secs_f64();
     keep(&loaded.files, outputs)?;
     for warning in &loaded.warnings {

@@ -1,6 +1,6 @@
 //! `nusselt verify`: checks a kept certificate, apart from the run that made it.
 
-use crate::args::Common;
+use crate::args::{Common, Reading};
 use crate::failure::Failure;
 use crate::input::load;
 use crate::output::{print, print_json};
@@ -25,8 +25,10 @@ order within the slivers that the file lists is excused, not proved.";
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLE)]
 pub(crate) struct Verify {
-    /// The scene
+    /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON
     scene: PathBuf,
+    #[command(flatten)]
+    reading: Reading,
     /// The certificate
     certificate: PathBuf,
     /// Use rational numbers alone: shares no predicate with what made the image, and takes about a hundred times as long
@@ -36,7 +38,7 @@ pub(crate) struct Verify {
 
 impl Verify {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let (scene, load_s) = load(&self.scene, std::iter::empty(), common)?;
+        let (scene, load_s) = load(&self.scene, &self.reading, std::iter::empty(), common)?;
         let start = Instant::now();
         let refused = |error: nusselt::io::CertificateError| Failure::Work(error.to_string());
         let kept = read_certificate(&self.certificate).map_err(refused)?;

@@ -3,7 +3,7 @@
 mod place;
 mod report;
 
-use crate::args::{Common, Order, parse_arithmetic, parse_direction, parse_point, parse_surface};
+use crate::args::{Common, Order, Reading, parse_arithmetic, parse_direction, parse_point, parse_surface};
 use crate::failure::Failure;
 use crate::input::{build, load};
 use crate::output::{is_same_file, print, print_json, write_file, write_obj, written};
@@ -35,8 +35,10 @@ The same with a proof that it is right, kept for nusselt verify
 #[command(after_help = EXAMPLE)]
 #[command(group(clap::ArgGroup::new("domain").required(true).args(["normal", "sphere", "on"])))]
 pub(crate) struct Contour {
-    /// The scene
+    /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON
     scene: PathBuf,
+    #[command(flatten)]
+    reading: Reading,
     /// Where to stand
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]
     eye: DVec3,
@@ -121,7 +123,7 @@ impl Contour {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         let projection = self.check()?;
         let outputs = self.output.iter().map(|output| &output.path).chain(&self.certificate).map(PathBuf::as_path);
-        let (scene, load_s) = load(&self.scene, outputs, common)?;
+        let (scene, load_s) = load(&self.scene, &self.reading, outputs, common)?;
         let (viewpoint, domain) = self.stand(&scene)?;
         let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
         let start = Instant::now();
