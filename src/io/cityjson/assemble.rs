@@ -27,6 +27,10 @@ pub(super) fn assemble(
             return Err(draft.refuse());
         }
     };
+    if let Err((id, what)) = check_size(model, size, wanted) {
+        draft.fault(Place::Item(city_object(id)), what);
+        return Err(draft.refuse());
+    }
     for (k, &vertex) in model.vertices.iter().enumerate() {
         draft.add_vertex(coordinates.point(vertex), || Place::Item(format!("vertex {k}")));
     }
@@ -34,7 +38,6 @@ pub(super) fn assemble(
         model,
         coordinates,
         draft,
-        unfolding: Unfolding::of(size as u64),
         materials: HashMap::new(),
         templates: HashMap::new(),
         runs: Vec::new(),
@@ -47,11 +50,7 @@ pub(super) fn assemble(
         if !ids.insert(id) {
             assembly.draft.fault(Place::Item(city_object(id)), "the file has two city objects with this id");
         }
-        if let Err(what) = assembly.add_object(number, id, object, wanted) {
-            // There is too much to go on.
-            assembly.draft.fault(Place::Item(city_object(id)), what);
-            return Err(assembly.draft.refuse());
-        }
+        assembly.add_object(number, id, object, wanted);
     }
     assembly.finish(wanted)
 }
@@ -76,6 +75,30 @@ fn prepare(model: &Model, options: &ReadOptions) -> Result<(Coordinates, Option<
     let known: Vec<String> = levels.iter().map(ToString::to_string).collect();
     let known = if known.is_empty() { "none is given".to_owned() } else { format!("there are {}", known.join(", ")) };
     Err((Place::File, format!("nothing has the level of detail {wanted}; {known}")))
+}
+
+/// Checks that the instances of templates do not unfold to too much; otherwise says with which city object they do.
+fn check_size(model: &Model, size: usize, wanted: Option<Lod>) -> Result<(), (&str, String)> {
+    let templates = model.templates.iter().flat_map(|templates| &templates.templates);
+    // Templates that cannot be used are faults of their instances.
+    let size_of = |template| surfaces(template).map_or(0, |surfaces| surfaces.iter().map(Surface::size).sum());
+    let sizes: Vec<u64> = templates.map(size_of).collect();
+    let mut limit = Unfolding::of(size as u64);
+    for (id, object) in &model.city_objects.0 {
+        let level = wanted.or_else(|| highest(model, object));
+        for geometry in object.geometry.iter().flatten().filter(|geometry| is_instance(geometry)) {
+            let known = geometry.template.and_then(|template| sizes.get(template));
+            if let Some(&size) = known.filter(|_| self::level(model, geometry) == level) {
+                limit.take(size).map_err(|what| (id.as_str(), what))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The highest level of detail of a city object.
+fn highest(model: &Model, object: &CityObject) -> Option<Lod> {
+    levels_of(model, object).max_by(|a, b| a.compare(*b))
 }
 
 /// The levels of detail of what has surfaces.
@@ -114,7 +137,6 @@ struct Assembly<'a, 'd> {
     model: &'a Model,
     coordinates: Coordinates,
     draft: Draft<'d>,
-    unfolding: Unfolding,
     materials: HashMap<&'a str, MaterialId>,
     /// The surfaces of the templates that were used, by their numbers.
     templates: HashMap<usize, Result<Rc<Vec<Surface<'a>>>, String>>,
@@ -128,17 +150,11 @@ struct Assembly<'a, 'd> {
 }
 
 impl<'a> Assembly<'a, '_> {
-    /// Adds the geometries of a city object; an error if the file unfolds to too much.
-    fn add_object(
-        &mut self,
-        number: usize,
-        id: &str,
-        object: &'a CityObject,
-        wanted: Option<Lod>,
-    ) -> Result<(), String> {
+    /// Adds the geometries of a city object.
+    fn add_object(&mut self, number: usize, id: &str, object: &'a CityObject, wanted: Option<Lod>) {
         let model = self.model;
-        let Some(geometries) = object.geometry.as_ref().filter(|list| !list.is_empty()) else { return Ok(()) };
-        let level = wanted.or_else(|| levels_of(model, object).max_by(|a, b| a.compare(*b)));
+        let Some(geometries) = object.geometry.as_ref().filter(|list| !list.is_empty()) else { return };
+        let level = wanted.or_else(|| highest(model, object));
         let mut object_id: Option<ObjectId> = None;
         let mut is_other_level = false;
         for (place, geometry) in geometries.iter().enumerate() {
@@ -167,14 +183,11 @@ impl<'a> Assembly<'a, '_> {
                 }
             };
             let object_id = *object_id.get_or_insert_with(|| self.draft.builder.add_object(id));
-            // An instance without surfaces takes time too.
-            self.unfolding.take(surfaces.iter().map(Surface::size).sum::<u64>().max(1))?;
             for surface in &*surfaces {
                 self.add_surface(surface, instance.as_ref(), object_id, surface.kind.unwrap_or(&object.r#type));
             }
         }
         self.without_level += usize::from(object_id.is_none() && is_other_level);
-        Ok(())
     }
 
     /// The surfaces of a geometry. Those of a template are collected once, as it may be used very often.

@@ -54,7 +54,7 @@ impl Coordinates {
         let row = |k: usize| DVec3::from_slice(&rows[4 * k..][..3]);
         let matrix = DMat3::from_cols(row(0), row(1), row(2)).transpose();
         let shift = DVec3::new(rows[3], rows[7], rows[11]);
-        let is_mirrored = orient3d(matrix.x_axis, matrix.y_axis, matrix.z_axis, DVec3::ZERO).is_negative();
+        let is_mirrored = orient3d(DVec3::ZERO, matrix.x_axis, matrix.y_axis, matrix.z_axis).is_negative();
         Ok(Placing { matrix, shift, unit: self.unit, at, is_mirrored })
     }
 }

@@ -233,7 +233,7 @@ impl Builder<'_, '_> {
             let material = self.material(self.root.meshes[*mesh].primitives[number].material);
             let run = Run { first: self.count, node: *node, mesh: *mesh, primitive: number };
             let axes = transform.matrix3;
-            let is_mirrored = orient3d(axes.x_axis, axes.y_axis, axes.z_axis, DVec3::ZERO).is_negative();
+            let is_mirrored = orient3d(DVec3::ZERO, axes.x_axis, axes.y_axis, axes.z_axis).is_negative();
             for k in 0..triangles.count {
                 let place = || run.place(run.first + k);
                 match triangles.corners(k) {
