@@ -42,6 +42,9 @@ pub(super) fn assemble(
         return Err(draft.refuse());
     }
     let elements = elements(root, &accessors, &buffers, &mut draft);
+    if !draft.faults.is_empty() {
+        return Err(draft.refuse());
+    }
     let triangles = triangles(root, &meshes, &elements, &mut draft);
     let unfolding = Unfolding::of(size as u64 + buffers.size());
     if let Err((item, what)) = check_size(&instances, &triangles, unfolding) {
