@@ -1,8 +1,11 @@
 //! No stage of the predicates but the last, integers of arbitrary width, touches the heap once a kernel is
-//! warm.
+//! warm; readers of files take memory for what is there, not for what is promised.
 
 use glam::DVec3;
 use nusselt::exact::{Direction, DirectionId, Kernel, Plane, Point, PredicateStats, Splitter, SplitterId, orient3d};
+use nusselt::io::{ReadOptions, ply, stl};
+#[cfg(all(feature = "gltf", feature = "cityjson"))]
+use nusselt::io::{cityjson, gltf};
 
 /// An eye, three planes through one line of sight and more in general position.
 struct Setting {
@@ -109,4 +112,56 @@ fn orient3d_allocates_nothing_up_to_the_last_stage() {
             assert_eq!(info.count_total, 0, "{scale:e}");
         }
     }
+}
+
+/// Memory that is asked for at most while something is read, in bytes.
+fn memory(read: impl FnOnce() -> bool) -> u64 {
+    allocation_counter::measure(|| assert!(!read(), "it is refused")).bytes_max
+}
+
+#[test]
+fn files_that_promise_much_and_hold_little_take_little_memory() {
+    let options = ReadOptions::default();
+    let mut lying = vec![b' '; 80];
+    lying.extend(u32::MAX.to_le_bytes());
+    lying.extend([0; 50]);
+    let stl = memory(|| stl::parse(&lying, "x.stl", &options).is_ok());
+    let header = "ply\nformat binary_big_endian 1.0\nelement vertex 4000000000\nproperty double x\nproperty double y\n\
+                  property double z\nelement face 4000000000\nproperty list uint uint vertex_indices\nend_header\n";
+    let vertices = memory(|| ply::parse(header.as_bytes(), "x.ply", &options).is_ok());
+    let header = header.replace("vertex 4000000000", "vertex 0").replace("face 4000000000", "face 1");
+    let list = [header.as_bytes(), &[255; 4], &[0; 100]].concat();
+    let faces = memory(|| ply::parse(&list, "x.ply", &options).is_ok());
+    for (what, bytes) in [("triangles", stl), ("vertices", vertices), ("a face", faces)] {
+        assert!(bytes < 20_000, "{what}: {bytes} bytes");
+    }
+}
+
+#[test]
+#[cfg(all(feature = "gltf", feature = "cityjson"))]
+fn json_that_promises_much_and_holds_little_takes_little_memory() {
+    let options = ReadOptions::default();
+    let gltf = |accessor: &str, nodes: &str, scene: &str| {
+        let text = format!(
+            r#"{{"asset":{{"version":"2.0"}},"scenes":[{{"nodes":[{scene}]}}],"nodes":[{nodes}],
+            "meshes":[{{"primitives":[{{"attributes":{{"POSITION":0}}}}]}}],
+            "accessors":[{{"componentType":5126,"type":"VEC3",{accessor}}}]}}"#
+        );
+        (text.len(), memory(|| gltf::parse(text.as_bytes(), "x.gltf", &options, |_| Ok(Vec::new())).is_ok()))
+    };
+    // Zeros that no buffer holds: once, and a thousand times.
+    let (_, once) = gltf(r#""count":3000000000"#, r#"{"mesh":0}"#, "0");
+    assert!(once < 20_000, "{once} bytes");
+    let nodes = vec![r#"{"mesh":0}"#; 1000].join(",");
+    let numbers = (0..1000).map(|k| k.to_string()).collect::<Vec<_>>().join(",");
+    let (size, many) = gltf(r#""count":3000000"#, &nodes, &numbers);
+    assert!(many < 60 * size as u64, "{many} bytes for {size}");
+    let text = format!(
+        r#"{{"type":"CityJSON","version":"2.0","vertices":[[0,0,0]],"CityObjects":{{"a":{{"type":"x","geometry":[{}]}}}},
+        "geometry-templates":{{"templates":[{{"type":"MultiSurface","boundaries":[{}]}}],"vertices-templates":[]}}}}"#,
+        vec![r#"{"type":"GeometryInstance","template":0,"boundaries":[0],"transformationMatrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]}"#; 10_000].join(","),
+        vec!["[[0,0,0]]"; 10_000].join(","),
+    );
+    let city = memory(|| cityjson::parse(text.as_bytes(), "x.json", &options).is_ok());
+    assert!(city < 60 * text.len() as u64, "{city} bytes for {}", text.len());
 }

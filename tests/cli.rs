@@ -271,6 +271,27 @@ fn what_cannot_be_read_or_written_is_named_and_leaves_nothing_behind() {
 }
 
 #[test]
+fn city_models_are_read_at_a_level_of_detail_and_from_an_origin() {
+    let folder = Folder::new("city");
+    let surface =
+        |lod: &str, ring: &str| format!("{{\"type\":\"MultiSurface\",\"lod\":\"{lod}\",\"boundaries\":[{ring}]}}");
+    let geometry = [surface("1", "[[0,1,2]]"), surface("2.2", "[[0,1,2]],[[0,2,3]]")].join(",");
+    let start = "{\"type\":\"CityJSON\",\"version\":\"2.0\",\"vertices\":[[0,0,0],[4,0,0],[4,4,0],[0,4,4]],";
+    let transform = "\"transform\":{\"scale\":[0.5,0.5,0.5],\"translate\":[10,20,30]}";
+    let object = format!("\"CityObjects\":{{\"a\":{{\"type\":\"Road\",\"geometry\":[{geometry}]}}}}");
+    folder.write("a.city.json", &format!("{start}{transform},{object}}}"));
+    let info = |flags: &str| -> Value {
+        serde_json::from_str(&folder.run(&format!("info a.city.json --json {flags}"), 0)).expect("JSON")
+    };
+    assert_eq!((&info("")["polygons"], &info("--lod 1")["polygons"]), (&Value::from(2), &Value::from(1)));
+    for (origin, high) in [("file", [12.0, 22.0, 32.0]), ("local", [2.0, 2.0, 2.0]), ("integers", [4.0, 4.0, 4.0])] {
+        assert_eq!(numbers(&info(&format!("--origin {origin}"))["bounds"]["high"]), high);
+    }
+    assert!(folder.run("info a.city.json --lod 3", 1).contains("a.city.json: nothing has the level of detail 3"));
+    assert!(folder.run("info a.city.json --origin here", 2).contains("there are file, local and integers"));
+}
+
+#[test]
 fn outputs_never_replace_what_is_read() {
     let folder = Folder::new("keep");
     let scene = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";

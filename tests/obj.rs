@@ -5,7 +5,7 @@ use nusselt::io::{self, Loaded, ReadError, ReadOptions, obj};
 use nusselt::scene::{Material, PolygonId, Shape};
 use proptest::prelude::*;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 fn no_files(_: &str) -> std::io::Result<Vec<u8>> {
     Err(std::io::Error::from(std::io::ErrorKind::NotFound))
@@ -178,14 +178,27 @@ fn the_files_that_were_read_are_known() {
 }
 
 #[test]
-fn endings_decide_the_format() {
-    let error = io::read_scene(Path::new("scene.xyz"), &ReadOptions::default()).unwrap_err();
-    assert_eq!(error.to_string(), "cannot read scene.xyz: its ending is not one of .obj; convert it or rename it");
-    assert!(matches!(io::read_scene(Path::new("obj"), &ReadOptions::default()), Err(ReadError::UnknownFormat { .. })));
-    assert!(matches!(
-        io::read_scene(Path::new("no such FILE.OBJ"), &ReadOptions::default()),
-        Err(ReadError::Io { .. })
-    ));
+fn files_of_no_known_format_are_refused_with_the_endings_that_are_known() {
+    let folder = std::env::temp_dir().join(format!("nusselt-endings-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    for name in ["scene.xyz", "obj"] {
+        let path = folder.join(name);
+        fs::write(&path, SQUARE).unwrap();
+        let error = io::read_scene(&path, &ReadOptions::default()).unwrap_err();
+        assert!(matches!(error, ReadError::UnknownFormat { .. }));
+        let known = ".obj, .gltf, .glb, .stl, .ply, .json, .city.json";
+        let expected = format!("its ending is not one of {known}, nor is its content; convert it or rename it");
+        assert_eq!(error.to_string(), format!("cannot read {}: {expected}", path.display()));
+    }
+    // Options of other formats are no fault, but told.
+    let path = folder.join("square.OBJ");
+    fs::write(&path, SQUARE.to_owned() + "f 1 2 3 4\n").unwrap();
+    let options = ReadOptions { lod: Some("2".to_owned()), ..ReadOptions::default() };
+    let warnings = io::read_scene(&path, &options).unwrap().warnings;
+    assert!(warnings.len() == 1 && warnings[0].contains("it is OBJ: levels of detail"), "{warnings:?}");
+    fs::remove_dir_all(&folder).unwrap();
+    let missing = io::read_scene(Path::new("no such FILE.xyz"), &ReadOptions::default());
+    assert!(matches!(missing, Err(ReadError::Io { .. })));
 }
 
 #[test]
@@ -242,54 +255,6 @@ fn interrupted_writing_leaves_nothing_behind() {
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
     assert_eq!(fs::read(&path).unwrap(), b"whole");
     fs::remove_dir_all(&folder).unwrap();
-}
-
-/// All .obj files below a folder.
-fn objs(folder: &Path, found: &mut Vec<PathBuf>) {
-    for entry in fs::read_dir(folder).expect("the folder can be read") {
-        let path = entry.expect("the folder can be read").path();
-        if path.is_dir() {
-            objs(&path, found);
-        } else if path.extension().is_some_and(|ending| ending == "obj") {
-            found.push(path);
-        }
-    }
-}
-
-#[test]
-fn real_files_load() {
-    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/scenes"));
-    if !folder.is_dir() {
-        eprintln!("SKIPPED: real_files_load: there is no folder {}", folder.display());
-        return;
-    }
-    let mut paths = Vec::new();
-    objs(folder, &mut paths);
-    paths.sort();
-    assert!(!paths.is_empty());
-    for path in paths {
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let Loaded { scene, warnings, .. } =
-            io::read_scene(&path, &ReadOptions::default()).unwrap_or_else(|error| panic!("{error}"));
-        let count = |shape| scene.polygons().filter(|polygon| polygon.shape() == shape).count();
-        let shapes = [Shape::Convex, Shape::Concave, Shape::NonPlanar, Shape::Degenerate].map(count);
-        eprintln!(
-            "{name}: {} polygons {shapes:?}, {} pieces, {warnings:?}",
-            scene.polygon_count(),
-            scene.piece_count()
-        );
-        match name.as_str() {
-            "teapot.obj" => assert_eq!(scene.polygon_count(), 6320),
-            "CornellBox-Original.obj" => {
-                assert_eq!(scene.polygon_count(), 22);
-                let left: Vec<_> = scene.polygons().filter(|polygon| polygon.shape() == Shape::NonPlanar).collect();
-                assert_eq!(left.len(), 1);
-                assert_eq!(left[0].object_name(), "leftWall");
-                assert!(scene.materials().iter().any(Material::is_emitter));
-            }
-            _ => {}
-        }
-    }
 }
 
 proptest! {

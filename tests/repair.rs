@@ -5,7 +5,7 @@ mod common;
 use common::{Random, cluttered_room};
 use glam::DVec3;
 use num_rational::BigRational;
-use nusselt::io::{ReadOptions, obj};
+use nusselt::io::{ReadOptions, cityjson, obj, ply, stl};
 use nusselt::scene::{
     DropCause, DuplicatePolicy, FaceSpec, Material, NonPlanarPolicy, OrDrop, PolygonId, Repair, Scene, SceneBuilder,
     SceneError, SceneProblem, Shape, ZeroAreaPolicy,
@@ -377,15 +377,49 @@ fn obj_files_with_malformed_faces_can_be_read() {
     let error = obj::parse(text.as_bytes(), "bad.obj", &ReadOptions::default(), no_files).unwrap_err().to_string();
     assert!(error.starts_with("bad.obj:4: "), "{error}");
     let repair = Repair { malformed: OrDrop::Drop, ..Repair::default() };
-    let options = ReadOptions { repair };
+    let options = ReadOptions { repair, ..ReadOptions::default() };
     let loaded = obj::parse(text.as_bytes(), "bad.obj", &options, no_files).expect("the rest is sound");
     let dropped: Vec<_> = loaded.scene.repairs().dropped.iter().map(|d| d.polygon.0).collect();
     assert_eq!(dropped, [1, 2, 3, 4]);
     assert_eq!(loaded.scene.polygon_count(), 6);
     assert_eq!(loaded.scene.polygon(PolygonId(5)).shape(), Shape::Convex);
     let [warning] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
-    assert!(warning.starts_with("bad.obj:4: ") && warning.ends_with("3 lines in all cannot be used"), "{warning}");
+    assert!(
+        warning.starts_with("bad.obj:4: ") && warning.ends_with("3 vertices or faces in all cannot be used"),
+        "{warning}"
+    );
     // Without any vertex, too.
     let loaded = obj::parse(b"f 1 2 3\nf 4 5 6\n", "bad.obj", &options, no_files).expect("all is dropped");
     assert_eq!((loaded.scene.polygon_count(), loaded.scene.vertices().len()), (2, 0));
+}
+
+#[test]
+fn other_files_with_malformed_faces_can_be_read() {
+    let repair = Repair { malformed: OrDrop::Drop, ..Repair::default() };
+    let options = ReadOptions { repair, ..ReadOptions::default() };
+    let dropped = |loaded: &nusselt::io::Loaded| -> Vec<u32> {
+        loaded.scene.repairs().dropped.iter().map(|d| d.polygon.0).collect()
+    };
+    let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+        element face 4\nproperty list uchar int vertex_indices\nend_header\n";
+    let text = format!("{header}0 0 0\n1 0 0\n0 1 0\nnan 0 1\n3 0 1 2\n3 0 1 3\n3 0 1 9\n2 0 1\n");
+    assert!(ply::parse(text.as_bytes(), "bad.ply", &ReadOptions::default()).is_err());
+    let loaded = ply::parse(text.as_bytes(), "bad.ply", &options).expect("the rest is sound");
+    assert_eq!((dropped(&loaded), loaded.scene.polygon_count()), (vec![1, 2, 3], 4));
+
+    let facet = |corners: &str| format!("facet normal 0 0 1\nouter loop\n{corners}endloop\nendfacet\n");
+    let sound = facet("vertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n");
+    let short = facet("vertex 0 0 0\nvertex 1 0 0\n");
+    let broken = facet("vertex 0 0 0\nvertex inf 0 0\nvertex 0 1 0\n");
+    let text = format!("solid a\n{short}{sound}{broken}endsolid a\n");
+    assert!(stl::parse(text.as_bytes(), "bad.stl", &ReadOptions::default()).is_err());
+    let loaded = stl::parse(text.as_bytes(), "bad.stl", &options).expect("the rest is sound");
+    assert_eq!((dropped(&loaded), loaded.scene.polygon_count()), (vec![0, 2], 3));
+
+    let city = r#"{"type":"CityJSON","version":"2.0","transform":{"scale":[1,1,1],"translate":[0,0,0]},
+        "CityObjects":{"a":{"type":"Building","geometry":[{"type":"MultiSurface","lod":"1","boundaries":[[[0,1,2]],[[0,1,7]]]}]}},
+        "vertices":[[0,0,0],[1,0,0],[0,1,0]]}"#;
+    assert!(cityjson::parse(city.as_bytes(), "bad.json", &ReadOptions::default()).is_err());
+    let loaded = cityjson::parse(city.as_bytes(), "bad.json", &options).expect("the rest is sound");
+    assert_eq!((dropped(&loaded), loaded.scene.polygon_count()), (vec![1], 2));
 }

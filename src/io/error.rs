@@ -15,17 +15,49 @@ pub enum ReadError {
         /// What the system says.
         source: std::io::Error,
     },
-    /// There is no reader for the ending of the file name.
-    #[error("cannot read {}: its ending is not one of {known}; convert it or rename it", path.display())]
+    /// The ending of the file name is not known, and its content is that of no format that can be told by it.
+    #[error("cannot read {}: its ending is not one of {known}, nor is its content; convert it or rename it", path.display())]
     UnknownFormat {
         /// The file.
         path: PathBuf,
         /// The endings that are known.
         known: String,
     },
+    /// The reader for the format is not part of this build.
+    #[error("cannot read {}: it is {format}, and this build is without the feature {feature}; build it with", path.display())]
+    NotBuilt {
+        /// The file.
+        path: PathBuf,
+        /// What the format is called.
+        format: &'static str,
+        /// The feature of the crate that has the reader.
+        feature: &'static str,
+    },
     /// What the file contains cannot be used.
     #[error("{0}")]
     Invalid(Faults),
+}
+
+/// A place in a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line, from 1.
+    Line(usize),
+    /// A part that the format has a name or a number for: `mesh 0, primitive 2, triangle 7`.
+    Item(String),
+}
+
+impl Place {
+    /// The place with the name of its file, as messages start: `a.obj:7` or `a.glb: mesh 0`.
+    pub(super) fn within(&self, file: &str) -> String {
+        match self {
+            Self::File => file.to_owned(),
+            Self::Line(line) => format!("{file}:{line}"),
+            Self::Item(item) => format!("{file}: {item}"),
+        }
+    }
 }
 
 /// One thing that is wrong in a file.
@@ -33,18 +65,15 @@ pub enum ReadError {
 pub struct Fault {
     /// The name of the file.
     pub file: String,
-    /// The line, from 1; `None` if the file as a whole is meant.
-    pub line: Option<usize>,
+    /// Where in it.
+    pub place: Place,
     /// What is wrong and what to do.
     pub what: String,
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self.line {
-            Some(line) => write!(f, "{}:{line}: {}", self.file, self.what),
-            None => write!(f, "{}: {}", self.file, self.what),
-        }
+        write!(f, "{}: {}", self.place.within(&self.file), self.what)
     }
 }
 
@@ -62,16 +91,17 @@ impl Faults {
     const SHOWN: usize = 8;
 
     /// Notes a fault; past the first ten thousand they are only counted.
-    pub(crate) fn note(&mut self, file: &str, line: Option<usize>, what: impl fmt::Display) {
+    pub(crate) fn note(&mut self, file: &str, place: Place, what: impl fmt::Display) {
         self.count += 1;
         if self.kept.len() < Self::KEPT {
-            self.kept.push(Fault { file: file.to_owned(), line, what: what.to_string() });
+            self.kept.push(Fault { file: file.to_owned(), place, what: what.to_string() });
         }
     }
 
-    /// Puts them in order of file and line.
+    /// Puts them in order of file and line; what is not in a line comes first, as it was noted.
     pub(crate) fn sort(&mut self) {
-        self.kept.sort_by(|a, b| (&a.file, a.line).cmp(&(&b.file, b.line)));
+        let line = |fault: &Fault| if let Place::Line(line) = fault.place { line } else { 0 };
+        self.kept.sort_by(|a, b| a.file.cmp(&b.file).then(line(a).cmp(&line(b))));
     }
 
     /// The faults, in order of their places; at most the first ten thousand.

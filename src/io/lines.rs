@@ -1,4 +1,4 @@
-//! The logical lines of OBJ and MTL files.
+//! The lines of text files, and the logical lines of OBJ and MTL files.
 
 use std::borrow::Cow;
 
@@ -52,14 +52,20 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
-/// Takes a line off the rest; true if a backslash says that it goes on.
-fn next_line<'a>(rest: &mut &'a [u8], count: &mut usize) -> (Cow<'a, str>, bool) {
+/// Takes a line off the rest. It ends with LF, CR LF or CR.
+pub(super) fn take_line<'a>(rest: &mut &'a [u8]) -> &'a [u8] {
     let end = rest.iter().position(|&byte| byte == b'\n' || byte == b'\r').unwrap_or(rest.len());
     let (line, after) = rest.split_at(end);
     *rest = match after {
         [b'\r', b'\n', after @ ..] | [_, after @ ..] => after,
         [] => &[],
     };
+    line
+}
+
+/// Takes a line off the rest; true if a backslash says that it goes on.
+fn next_line<'a>(rest: &mut &'a [u8], count: &mut usize) -> (Cow<'a, str>, bool) {
+    let line = take_line(rest);
     *count += 1;
     let is_comment = |k: usize| line[k] == b'#' && (k == 0 || is_blank(line[k - 1].into()));
     if let Some(start) = (0..line.len()).find(|&k| is_comment(k)) {

@@ -6,18 +6,28 @@
 mod atomic;
 #[cfg(feature = "json")]
 pub mod certificate;
+#[cfg(feature = "cityjson")]
+pub mod cityjson;
 #[cfg(feature = "json")]
 mod contour_json;
+mod draft;
 mod error;
+mod formats;
 #[cfg(feature = "json")]
 mod geojson;
+#[cfg(feature = "gltf")]
+pub mod gltf;
 #[cfg(feature = "json")]
 mod json;
 mod lines;
 pub mod mtl;
 mod number;
 pub mod obj;
+pub mod ply;
+pub mod stl;
 mod svg;
+#[cfg(any(feature = "cityjson", feature = "gltf", feature = "json"))]
+mod told;
 mod visible_obj;
 
 pub use atomic::atomic_write;
@@ -29,13 +39,14 @@ pub use certificate::{
 pub use contour_json::{
     CONTOUR_SCHEMA, CertificateRow, ContourSummary, DomainRow, ObjectRow, PolygonRow, Share, write_contour_json,
 };
-pub use error::{Fault, Faults, ReadError};
+pub use error::{Fault, Faults, Place, ReadError};
 #[cfg(feature = "json")]
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use svg::{SvgOptions, write_svg};
 pub use visible_obj::{fragment_groups, visible_groups};
 
-use crate::scene::Scene;
+use crate::scene::{Repair, Scene};
+use formats::Format;
 use std::fs;
 use std::io::{Error, Result as IoResult};
 use std::path::{Path, PathBuf};
@@ -55,13 +66,25 @@ pub struct Loaded {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     /// What becomes of broken faces. What it changed is in [`Scene::repairs`].
-    pub repair: crate::scene::Repair,
+    pub repair: Repair,
+    /// The level of detail of city objects, as CityJSON has it: `2` or `2.2`. By default the highest of each.
+    pub lod: Option<String>,
+    /// What the coordinates of a CityJSON file are.
+    pub origin: Origin,
 }
 
-type Reader = fn(&Path, &ReadOptions) -> Result<Loaded, ReadError>;
-
-/// The formats, by the ending of the file name.
-const READERS: &[(&str, Reader)] = &[("obj", obj::read)];
+/// What coordinates are in a scene from a CityJSON file, whose vertices are integers v with a scale and a translation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Origin {
+    /// Coordinates in the reference system of the file: v x scale + translate, each operation rounded to f64.
+    #[default]
+    File,
+    /// v x scale, rounded once: the same unit, but a local origin. Numbers are small, so they keep more digits.
+    Local,
+    /// v itself: nothing is rounded, what is planar stays planar, and the unit is the file's scale (often a millimetre),
+    /// which must be the same along all axes.
+    Integers,
+}
 
 /// The bytes of a regular file. A device or a pipe may never end.
 fn read_regular(path: &Path) -> IoResult<Vec<u8>> {
@@ -71,18 +94,18 @@ fn read_regular(path: &Path) -> IoResult<Vec<u8>> {
     fs::read(path)
 }
 
-/// Reads a scene from a file; its ending decides the format, in upper or lower case.
+/// Reads a scene from a file. Its ending decides the format, in upper or lower case; if that is not known, its content
+/// does.
 ///
 /// # Errors
-/// If the file cannot be read, its ending is not known, or what it contains cannot be used.
+/// If the file cannot be read, neither ending nor content are known, or what it contains cannot be used.
 pub fn read_scene(path: &Path, options: &ReadOptions) -> Result<Loaded, ReadError> {
-    let name = path.file_name().unwrap_or_default().to_string_lossy().to_lowercase();
-    let is_reader_of = |ending: &str| name.strip_suffix(ending).is_some_and(|stem| stem.ends_with('.'));
-    match READERS.iter().find(|(ending, _)| is_reader_of(ending)) {
-        Some((_, read)) => read(path, options),
-        None => Err(ReadError::UnknownFormat {
-            path: path.to_owned(),
-            known: READERS.iter().map(|(ending, _)| format!(".{ending}")).collect::<Vec<_>>().join(", "),
-        }),
+    let bytes = read_regular(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
+    let format = Format::of(path, &bytes)?;
+    let mut loaded = format.read(path, &bytes, options)?;
+    if format.name != "CityJSON" && (options.lod.is_some() || options.origin != Origin::File) {
+        let what = "levels of detail and local origins are for CityJSON; they were ignored";
+        loaded.warnings.push(format!("{}: it is {}: {what}", path.display(), format.name));
     }
+    Ok(loaded)
 }

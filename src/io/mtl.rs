@@ -1,7 +1,7 @@
 //! Materials in MTL files: `newmtl`, `Kd`, `Ks`, `Ns` and `Ke`; everything else is ignored.
 //! A material without a name is `default`, as for `usemtl`.
 
-use super::error::Faults;
+use super::error::{Faults, Place};
 use super::lines::{is_blank, lines};
 use super::number::{self, Shortest};
 use crate::scene::Material;
@@ -40,7 +40,7 @@ pub(super) fn parse(bytes: &[u8], file: &str, faults: &mut Faults, warnings: &mu
             _ => Ok(()),
         };
         if let Err(what) = result {
-            faults.note(file, Some(line.number), format_args!("{keyword}: {what}"));
+            faults.note(file, Place::Line(line.number), format_args!("{keyword}: {what}"));
         }
     }
     if spectra > 0 {

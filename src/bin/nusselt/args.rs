@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use glam::DVec3;
-use nusselt::io::ReadOptions;
+use nusselt::io::{Origin, ReadOptions};
 use nusselt::scene::{PolygonId, Repair, RepairSpecError, Side};
 use nusselt::verify::Arithmetic;
 use std::num::NonZeroUsize;
@@ -49,11 +49,27 @@ pub(crate) struct Loading {
     /// dropped keeps its number; what is changed is said, and listed by nusselt info
     #[arg(long, value_name = "SPEC", default_value_t, value_parser = parse_repair, hide_default_value = true)]
     pub(crate) repair: Repair,
+    /// Take this level of detail of city objects, like 2 or 2.2 (CityJSON) [default: the highest of each]
+    #[arg(long, value_name = "L", allow_hyphen_values = true)]
+    lod: Option<String>,
+    /// Take coordinates as they are in the reference system of the file, without its translation (local), or as the
+    /// integers that the file has (CityJSON)
+    #[arg(long, value_name = "file|local|integers", default_value = "file", value_parser = parse_origin)]
+    origin: Origin,
 }
 
 impl Loading {
     pub(crate) fn options(&self) -> ReadOptions {
-        ReadOptions { repair: self.repair }
+        ReadOptions { repair: self.repair, lod: self.lod.clone(), origin: self.origin }
+    }
+}
+
+fn parse_origin(text: &str) -> Result<Origin, String> {
+    match text {
+        "file" => Ok(Origin::File),
+        "local" => Ok(Origin::Local),
+        "integers" => Ok(Origin::Integers),
+        _ => Err("there are file, local and integers".to_owned()),
     }
 }
 

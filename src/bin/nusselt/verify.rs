@@ -25,7 +25,7 @@ order within the slivers that the file lists is excused, not proved.";
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLE)]
 pub(crate) struct Verify {
-    /// The scene
+    /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON
     scene: PathBuf,
     /// The certificate
     certificate: PathBuf,

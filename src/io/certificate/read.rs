@@ -5,6 +5,7 @@ use super::error::CertificateError;
 use super::rows::{DomainRow, SceneSize, SliverRow, SplitterRow, present};
 use crate::exact::Sign;
 use crate::io::read_regular;
+use crate::io::told::{shortened, told};
 use crate::scene::{PieceId, Scene, Splitter};
 use crate::verify::{Evidence, EvidenceCell, EvidenceSliver, HalfSphere};
 use glam::DVec3;
@@ -41,10 +42,7 @@ impl KeptCertificate {
     /// hold, sides that name no splitter.
     pub fn from_json(bytes: &[u8], file: &str) -> Result<Self, CertificateError> {
         let invalid = |what: &str| CertificateError::Invalid { file: file.to_owned(), what: shortened(what) };
-        let told = |error: serde_json::Error| {
-            invalid(&error.to_string().replacen("EOF while parsing", "the file ends in the midst of", 1))
-        };
-        let row: FileRow = serde_json::from_slice(bytes).map_err(told)?;
+        let row: FileRow = serde_json::from_slice(bytes).map_err(|error| invalid(&told(&error)))?;
         if row.epsilon < 0.0 {
             return Err(invalid("its epsilon is negative"));
         }
@@ -77,20 +75,6 @@ impl KeptCertificate {
         }
         Err(CertificateError::OtherScene { file: file.to_owned(), made_for, found })
     }
-}
-
-/// So many characters of a message are shown; it may quote names of any length from the file.
-const SHOWN: usize = 240;
-
-/// A message on one line, without what could control a terminal.
-fn shortened(message: &str) -> String {
-    let clean = message.chars().map(|c| if c.is_control() { '?' } else { c });
-    if message.chars().count() <= SHOWN {
-        return clean.collect();
-    }
-    // Its end says where.
-    let place = message.rfind(" at line ").filter(|&place| message.len() - place < 60).unwrap_or(message.len());
-    clean.take(SHOWN).chain("...".chars()).chain(message[place..].chars()).collect()
 }
 
 #[derive(serde::Deserialize)]

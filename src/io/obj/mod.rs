@@ -8,7 +8,8 @@
 mod read;
 mod write;
 
-pub use read::{parse, read};
+pub use read::parse;
+pub(super) use read::read;
 pub use write::{Group, write};
 
 /// A name as one can write it into a line of OBJ or MTL so that it reads the same; line breaks and the

@@ -1,27 +1,24 @@
 //! The OBJ reader.
 
-use super::super::error::Faults;
+use super::super::draft::Draft;
+use super::super::error::Place;
 use super::super::lines::{Line, is_blank, lines};
 use super::super::mtl::{self, Definition};
 use super::super::number::{self, shown};
 use super::super::{Loaded, ReadError, ReadOptions, read_regular};
-use crate::scene::{FaceSpec, Material, MaterialId, ObjectId, OrDrop, Scene, SceneBuilder, SceneProblem, Shape};
+use crate::scene::{Material, MaterialId, ObjectId};
 use glam::DVec3;
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Reads an OBJ file and the material files it names.
-///
-/// # Errors
-/// If the file cannot be read or used. A material file that is missing is a warning.
-pub fn read(path: &Path, options: &ReadOptions) -> Result<Loaded, ReadError> {
-    let bytes = read_regular(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
+/// Reads the bytes of an OBJ file, and the material files that it names beside it.
+pub(in crate::io) fn read(path: &Path, bytes: &[u8], options: &ReadOptions) -> Result<Loaded, ReadError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let mut known: HashSet<PathBuf> = HashSet::new();
     let mut files = vec![path.to_owned()];
-    let mut loaded = parse(&bytes, &path.to_string_lossy(), options, |name| {
+    let mut loaded = parse(bytes, &path.to_string_lossy(), options, |name| {
         let path = folder.join(name);
         let path = if path.exists() { path } else { folder.join(name.replace('\\', "/")) };
         // Each file once, whatever it is called.
@@ -75,16 +72,9 @@ struct Face {
 }
 
 struct Reader<'a, L> {
-    name: &'a str,
     load: L,
-    builder: SceneBuilder,
-    /// Whether malformed faces are left to the builder, which drops them.
-    drops: bool,
+    draft: Draft<'a>,
     vertex_count: usize,
-    has_bad_vertices: bool,
-    /// If malformed faces are dropped: the first line that is none, and why, and how many there are.
-    unusable: Option<(usize, String)>,
-    unusable_count: usize,
     faces: Vec<Face>,
     object: Option<String>,
     group: Option<String>,
@@ -98,8 +88,6 @@ struct Reader<'a, L> {
     definitions: HashMap<String, (String, Definition)>,
     ignored: Option<(usize, String)>,
     ignored_count: usize,
-    faults: Faults,
-    warnings: Vec<String>,
 }
 
 /// Keywords that say nothing about the shape of a face.
@@ -123,14 +111,9 @@ const WITHOUT_EFFECT: &[&str] = &[
 impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
     fn new(name: &'a str, options: &ReadOptions, load: L) -> Self {
         Self {
-            name,
             load,
-            builder: Scene::builder().repair(options.repair),
-            drops: options.repair.malformed == OrDrop::Drop,
+            draft: Draft::new(name, options),
             vertex_count: 0,
-            has_bad_vertices: false,
-            unusable: None,
-            unusable_count: 0,
             faces: Vec::new(),
             object: None,
             group: None,
@@ -142,8 +125,6 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
             definitions: HashMap::new(),
             ignored: None,
             ignored_count: 0,
-            faults: Faults::default(),
-            warnings: Vec::new(),
         }
     }
 
@@ -176,37 +157,25 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
             match result {
                 Ok(number) => position[k] = number,
                 Err(what) => {
-                    self.refuse_line(line, what);
-                    // Should it not be a fault, it makes the faces that name it malformed.
+                    self.draft.refuse_vertex(Place::Line(line), what);
                     position = [f64::NAN; 3];
-                    self.has_bad_vertices |= !self.drops;
                     break;
                 }
             }
         }
-        self.builder.add_vertex(DVec3::from(position));
+        self.draft.builder.add_vertex(DVec3::from(position));
         self.vertex_count += 1;
     }
 
     fn read_face(&mut self, line: usize, rest: &str) {
         let ring = self.ring(rest).unwrap_or_else(|what| {
-            self.refuse_line(line, what);
+            self.draft.refuse_face(Place::Line(line), what);
             Vec::new()
         });
         let object = self.current_object();
         let material = self.material.unwrap_or_else(|| self.use_material("default"));
         self.material = Some(material);
         self.faces.push(Face { line, ring, object, material });
-    }
-
-    /// Notes a vertex or a face that cannot be read.
-    fn refuse_line(&mut self, line: usize, what: String) {
-        if self.drops {
-            self.unusable_count += 1;
-            self.unusable.get_or_insert((line, what));
-        } else {
-            self.faults.note(self.name, Some(line), what);
-        }
     }
 
     fn ring(&self, corners: &str) -> Result<Vec<usize>, String> {
@@ -250,7 +219,7 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
 
     fn current_object(&mut self) -> ObjectId {
         let name = self.object.as_deref().or(self.group.as_deref()).unwrap_or("default");
-        let builder = &mut self.builder;
+        let builder = &mut self.draft.builder;
         *self.current.get_or_insert_with(|| builder.add_object(name))
     }
 
@@ -274,7 +243,7 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
             }
             if let Err(error) = self.read_library(name) {
                 let name_shown = shown(name);
-                self.warnings.push(format!("{}:{line}: no materials from {name_shown}: {error}", self.name));
+                self.draft.warn(&Place::Line(line), format_args!("no materials from {name_shown}: {error}"));
                 self.libraries.insert(name.to_owned());
             }
         }
@@ -283,7 +252,7 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
     fn read_library(&mut self, name: &str) -> io::Result<()> {
         let bytes = (self.load)(name)?;
         self.libraries.insert(name.to_owned());
-        for definition in mtl::parse(&bytes, name, &mut self.faults, &mut self.warnings) {
+        for definition in mtl::parse(&bytes, name, &mut self.draft.faults, &mut self.draft.warnings) {
             let key = definition.material.name.clone();
             // The first definition counts, as it does for readers that stop at it.
             self.definitions.entry(key).or_insert_with(|| (name.to_owned(), definition));
@@ -291,62 +260,19 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
         Ok(())
     }
 
-    /// Ends with what is wrong.
-    fn refuse(mut self) -> Result<Loaded, ReadError> {
-        self.faults.sort();
-        Err(ReadError::Invalid(self.faults))
-    }
-
     fn finish(mut self) -> Result<Loaded, ReadError> {
         let origins = self.add_materials();
         let lines = self.add_faces();
-        if self.has_bad_vertices || (self.vertex_count == 0 && !self.faults.is_empty()) {
-            return self.refuse();
-        }
-        let scene = match std::mem::take(&mut self.builder).build() {
-            Ok(scene) if self.faults.is_empty() => scene,
-            Ok(_) => return self.refuse(),
-            Err(error) => {
-                for problem in &error.problems {
-                    let (file, line) = self.place(problem, &origins, &lines);
-                    self.faults.note(&file, line, problem);
-                }
-                return self.refuse();
-            }
-        };
-        self.warnings.extend(empty_faces(&scene, self.name, &lines));
-        if let Some((line, what)) = self.unusable {
-            let count = self.unusable_count;
-            self.warnings.push(format!("{}:{line}: {what}; {count} lines in all cannot be used", self.name));
-        }
-        if scene.polygon_count() == 0 {
-            self.warnings.push(format!("{}: there are no faces", self.name));
-        }
         if let Some((line, keyword)) = self.ignored {
             let count = self.ignored_count;
-            self.warnings.push(format!(
-                "{}:{line}: {keyword} and what else is not known was ignored, {count} lines in all",
-                self.name
-            ));
+            self.draft.warn(
+                &Place::Line(line),
+                format_args!("{keyword} and what else is not known was ignored, {count} lines in all"),
+            );
         }
-        Ok(Loaded { scene, warnings: self.warnings, files: Vec::new() })
-    }
-
-    /// The file and line of a problem.
-    fn place(
-        &self,
-        problem: &SceneProblem,
-        origins: &[Option<(String, usize)>],
-        lines: &[usize],
-    ) -> (String, Option<usize>) {
-        let mut line = problem.polygon().and_then(|polygon| lines.get(polygon.index()).copied());
-        if let SceneProblem::BadMaterial { material, .. } = problem {
-            if let Some(Some((file, origin))) = origins.get(*material as usize) {
-                return (file.clone(), Some(*origin));
-            }
-            line = None;
-        }
-        (self.name.to_owned(), line)
+        let face = |k: usize| lines.get(k).map_or(Place::File, |&line| Place::Line(line));
+        let material = |k: usize| origins.get(k).cloned().flatten().map(|(file, line)| (file, Place::Line(line)));
+        self.draft.finish(face, material)
     }
 
     /// Adds the materials that are used; for each the file and line that define it.
@@ -361,52 +287,39 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
             if origin.is_none() && name != "default" {
                 undefined.push(name.as_str());
             }
-            self.builder.add_material(material);
+            self.draft.builder.add_material(material);
             origins.push(origin);
         }
         if !undefined.is_empty() {
             let names: Vec<_> = undefined.iter().take(8).map(|name| shown(name)).collect();
             let more = if undefined.len() > names.len() { ", ..." } else { "" };
-            self.warnings.push(format!(
-                "{}: {} materials are defined nowhere, grey is taken for them: {}{more}",
-                self.name,
-                undefined.len(),
-                names.join(", "),
-            ));
+            let (count, names) = (undefined.len(), names.join(", "));
+            let what = format!("{count} materials are defined nowhere, grey is taken for them: {names}{more}");
+            self.draft.warn(&Place::File, what);
         }
         origins
     }
 
-    /// Adds the faces; for each its line. One that cannot be used keeps its number, for the messages about
-    /// the others, though there will be no scene.
+    /// Adds the faces; for each its line.
     fn add_faces(&mut self) -> Vec<usize> {
         let count = self.vertex_count;
         let mut lines = Vec::with_capacity(self.faces.len());
         for Face { line, mut ring, object, material } in self.faces.drain(..) {
-            if self.drops {
-                // Whatever is wrong with it, the builder finds it.
-            } else if let Some(unknown) = ring.iter().find(|&&index| index >= count) {
+            if let Some(unknown) = ring.iter().find(|&&index| index >= count)
+                && !self.draft.drops
+            {
                 let what = format_args!("there is no vertex {}; the file has {count}", unknown + 1);
-                self.faults.note(self.name, Some(line), what);
+                self.draft.refuse_face(Place::Line(line), what);
                 ring.clear();
             }
-            if ring.is_empty() && !self.drops {
-                if count == 0 {
-                    break;
-                }
-                ring = vec![0; 3];
-            }
             lines.push(line);
-            self.builder.add_face(FaceSpec { rings: vec![ring], object, material: MaterialId(material as u32) });
+            let material = MaterialId(material as u32);
+            if ring.is_empty() {
+                self.draft.add_broken_face(object, material);
+            } else {
+                self.draft.add_face(vec![ring], object, material);
+            }
         }
         lines
     }
-}
-
-/// A warning that counts the faces without area.
-fn empty_faces(scene: &Scene, name: &str, lines: &[usize]) -> Option<String> {
-    let mut empty = scene.polygons().filter(|polygon| polygon.shape() == Shape::Degenerate);
-    let first = lines.get(empty.next()?.id().index())?;
-    let count = 1 + empty.count();
-    Some(format!("{name}:{first}: this face has no area, {count} in all; they keep their numbers and hide nothing"))
 }

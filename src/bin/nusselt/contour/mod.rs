@@ -37,7 +37,7 @@ The same with a proof that it is right, kept for nusselt verify
 #[command(after_help = EXAMPLE)]
 #[command(group(clap::ArgGroup::new("domain").required(true).args(["normal", "sphere", "on"])))]
 pub(crate) struct Contour {
-    /// The scene
+    /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON
     scene: PathBuf,
     /// Where to stand
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true)]

@@ -20,7 +20,7 @@ Example: look over a room, and write the fragments of its 3D BSP
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLE)]
 pub(crate) struct Info {
-    /// The scene
+    /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON
     scene: PathBuf,
     /// Write the fragments into which the 3D BSP cuts the scene
     #[arg(long)]

@@ -1,0 +1,197 @@
+//! The JSON of glTF, as far as it says what a scene is made of.
+
+use super::super::number::shown;
+use super::super::told::told;
+use serde::Deserialize;
+
+/// The whole file.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Root {
+    asset: Asset,
+    #[serde(default)]
+    pub(super) extensions_required: Vec<String>,
+    pub(super) scene: Option<usize>,
+    #[serde(default)]
+    pub(super) scenes: Vec<Scene>,
+    #[serde(default)]
+    pub(super) nodes: Vec<Node>,
+    #[serde(default)]
+    pub(super) meshes: Vec<Mesh>,
+    #[serde(default)]
+    pub(super) materials: Vec<Material>,
+    #[serde(default)]
+    pub(super) accessors: Vec<Accessor>,
+    #[serde(default)]
+    pub(super) buffer_views: Vec<View>,
+    #[serde(default)]
+    pub(super) buffers: Vec<Buffer>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+struct Asset {
+    version: String,
+    min_version: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Scene {
+    #[serde(default)]
+    pub(super) nodes: Vec<usize>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Node {
+    pub(super) name: Option<String>,
+    #[serde(default)]
+    pub(super) children: Vec<usize>,
+    pub(super) mesh: Option<usize>,
+    pub(super) skin: Option<usize>,
+    pub(super) matrix: Option<Box<[f64; 16]>>,
+    pub(super) translation: Option<[f64; 3]>,
+    pub(super) rotation: Option<[f64; 4]>,
+    pub(super) scale: Option<[f64; 3]>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Mesh {
+    pub(super) name: Option<String>,
+    pub(super) primitives: Vec<Primitive>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Primitive {
+    #[serde(default)]
+    pub(super) attributes: Attributes,
+    pub(super) indices: Option<usize>,
+    pub(super) material: Option<usize>,
+    #[serde(default = "triangles")]
+    pub(super) mode: u32,
+    #[serde(default)]
+    pub(super) targets: Vec<serde::de::IgnoredAny>,
+}
+
+fn triangles() -> u32 {
+    4
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct Attributes {
+    #[serde(rename = "POSITION")]
+    pub(super) position: Option<usize>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Accessor {
+    pub(super) buffer_view: Option<usize>,
+    #[serde(default)]
+    pub(super) byte_offset: usize,
+    pub(super) component_type: u32,
+    #[serde(default)]
+    pub(super) normalized: bool,
+    pub(super) count: usize,
+    pub(super) r#type: String,
+    pub(super) sparse: Option<Box<Sparse>>,
+}
+
+#[derive(Debug, Deserialize)]
+pub(super) struct Sparse {
+    pub(super) count: usize,
+    pub(super) indices: SparseIndices,
+    pub(super) values: SparseValues,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseIndices {
+    pub(super) buffer_view: usize,
+    #[serde(default)]
+    pub(super) byte_offset: usize,
+    pub(super) component_type: u32,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct SparseValues {
+    pub(super) buffer_view: usize,
+    #[serde(default)]
+    pub(super) byte_offset: usize,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct View {
+    pub(super) buffer: usize,
+    #[serde(default)]
+    pub(super) byte_offset: usize,
+    pub(super) byte_length: usize,
+    pub(super) byte_stride: Option<usize>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Buffer {
+    pub(super) byte_length: usize,
+    pub(super) uri: Option<String>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Material {
+    pub(super) name: Option<String>,
+    pub(super) pbr_metallic_roughness: Option<Surface>,
+    pub(super) emissive_factor: Option<[f64; 3]>,
+    pub(super) emissive_texture: Option<serde::de::IgnoredAny>,
+    #[serde(default)]
+    pub(super) extensions: MaterialExtensions,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct Surface {
+    pub(super) base_color_factor: Option<[f64; 4]>,
+    pub(super) base_color_texture: Option<serde::de::IgnoredAny>,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct MaterialExtensions {
+    #[serde(rename = "KHR_materials_emissive_strength")]
+    pub(super) emissive_strength: Option<EmissiveStrength>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(super) struct EmissiveStrength {
+    pub(super) emissive_strength: Option<f64>,
+}
+
+/// Reads it; otherwise says in which line it is wrong (0 if in none), and how.
+pub(super) fn parse(text: &[u8]) -> Result<Root, (usize, String)> {
+    serde_json::from_slice(text).map_err(|error| (error.line(), told(&error)))
+}
+
+/// Refuses versions other than 2, and extensions that change what the scene is.
+pub(super) fn check_version(root: &Root) -> Result<(), String> {
+    let is_2 = |version: &str| version.split('.').next() == Some("2");
+    let Asset { version, min_version } = &root.asset;
+    if !is_2(version) || min_version.as_deref().is_some_and(|least| least != "2.0") {
+        let version = shown(min_version.as_deref().unwrap_or(version));
+        return Err(format!("it takes version {version} of glTF to read it; convert it to 2.0"));
+    }
+    // What only looks are made of.
+    let harmless = ["KHR_materials_", "KHR_texture_", "EXT_texture_", "MSFT_texture_", "KHR_lights_", "EXT_lights_"];
+    let known = ["KHR_mesh_quantization", "KHR_xmp_json_ld", "KHR_animation_pointer"];
+    for extension in &root.extensions_required {
+        let what = match extension.as_str() {
+            "KHR_draco_mesh_compression" => "its meshes are compressed by Draco",
+            "EXT_meshopt_compression" | "KHR_meshopt_compression" => "its buffers are compressed by meshoptimizer",
+            _ if known.contains(&extension.as_str()) => continue,
+            _ if harmless.iter().any(|start| extension.starts_with(start)) => continue,
+            _ => "its scene takes an extension that is not known",
+        };
+        return Err(format!("{what} ({}); write it again without", shown(extension)));
+    }
+    Ok(())
+}

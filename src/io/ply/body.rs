@@ -1,0 +1,254 @@
+//! The body of a PLY file: vertices, faces and strips of triangles.
+
+use super::super::draft::Draft;
+use super::super::error::Place;
+use super::super::number::shown;
+use super::super::{Loaded, ReadError};
+use super::header::{Element, Header, Kind};
+use super::source::{Missing, Source, whole};
+use crate::scene::Material;
+use glam::DVec3;
+
+/// What an element is read for, with the places of its properties.
+#[derive(Clone, Copy)]
+enum Role {
+    Vertex([usize; 3]),
+    Face(usize),
+    Strips(usize),
+    None,
+}
+
+/// A face as the file has it; an empty ring if it cannot be used.
+struct Face {
+    ring: Vec<usize>,
+    origin: Origin,
+}
+
+/// Where a face is: its line in text, else its number among those of its element.
+#[derive(Clone, Copy)]
+enum Origin {
+    Line(usize),
+    Face(usize),
+    Strips(usize),
+}
+
+impl Origin {
+    fn place(self) -> Place {
+        match self {
+            Self::Line(line) => Place::Line(line),
+            Self::Face(k) => Place::Item(format!("face {k}")),
+            Self::Strips(k) => Place::Item(format!("tristrips {k}")),
+        }
+    }
+}
+
+struct Reader<'a> {
+    draft: Draft<'a>,
+    source: Source<'a>,
+    vertex_count: usize,
+    faces: Vec<Face>,
+    /// The numbers of the element that are of interest.
+    numbers: Vec<f64>,
+}
+
+pub(super) fn parse<'a>(header: &Header<'a>, draft: Draft<'a>) -> Result<Loaded, ReadError> {
+    let source = Source::new(header.encoding, header.body, header.lines);
+    let mut reader = Reader { draft, source, vertex_count: 0, faces: Vec::new(), numbers: Vec::new() };
+    for element in &header.elements {
+        if let Err((place, what)) = reader.read_elements(element) {
+            reader.draft.fault(place, what);
+            return Err(reader.draft.into_error());
+        }
+    }
+    reader.finish()
+}
+
+impl Reader<'_> {
+    /// Reads all elements of a kind; an error if nothing after it can be read.
+    fn read_elements(&mut self, element: &Element) -> Result<(), (Place, String)> {
+        let role = role(element).map_err(|what| (Place::Line(element.line), what))?;
+        let name = shown(&element.name);
+        let least = element.least_size();
+        if least == 0 {
+            // Nothing is written for elements without properties, however many there are said to be.
+            return Ok(());
+        }
+        let is_text = self.source.is_text();
+        let most = self.source.bytes_left() / if is_text { 1 } else { least };
+        if element.count > most {
+            let what =
+                format!("it promises {} elements {name}, but the file ends before; it may be cut off", element.count);
+            return Err((Place::Line(element.line), what));
+        }
+        for k in 0..element.count {
+            let result = self.source.begin().and_then(|()| self.read_numbers(element, role));
+            let line = self.source.line;
+            let place = || if is_text { Place::Line(line) } else { Place::Item(format!("{} {k}", element.name)) };
+            match result {
+                Ok(()) => self.add(role, k, place),
+                Err(Missing::Bad(what)) if is_text => {
+                    self.add_broken(role, k, place(), what);
+                }
+                Err(Missing::Bad(what)) => return Err((place(), what)),
+                Err(Missing::End) => {
+                    let what = format!("the file ends in element {k} of {} {name}; it may be cut off", element.count);
+                    return Err((Place::File, what));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads an element, and keeps the numbers that its role needs.
+    fn read_numbers(&mut self, element: &Element, role: Role) -> Result<(), Missing> {
+        self.numbers.clear();
+        self.numbers.resize(if let Role::Vertex(_) = role { 3 } else { 0 }, 0.0);
+        for (k, property) in element.properties.iter().enumerate() {
+            match (property.kind, role) {
+                (Kind::Number(kind), Role::Vertex(places)) if places.contains(&k) => {
+                    let number = self.source.number(kind)?;
+                    for (_, coordinate) in places.iter().zip(&mut self.numbers).filter(|(place, _)| **place == k) {
+                        *coordinate = number;
+                    }
+                }
+                (Kind::Number(kind), _) => self.source.skip(kind, 1)?,
+                (Kind::List { length, item }, Role::Face(place) | Role::Strips(place)) if place == k => {
+                    let length = self.source.length(length)?;
+                    for _ in 0..length {
+                        let number = self.source.number(item)?;
+                        self.numbers.push(number);
+                    }
+                }
+                (Kind::List { length, item }, _) => {
+                    let length = self.source.length(length)?;
+                    self.source.skip(item, length)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds what the numbers of an element say.
+    fn add(&mut self, role: Role, k: usize, place: impl Fn() -> Place) {
+        match role {
+            Role::Vertex(_) => {
+                let position = DVec3::new(self.numbers[0], self.numbers[1], self.numbers[2]);
+                self.draft.add_vertex(position, place);
+                self.vertex_count += 1;
+            }
+            Role::Face(_) => {
+                let ring = indices(&self.numbers).unwrap_or_else(|what| {
+                    self.draft.refuse_face(place(), what);
+                    Vec::new()
+                });
+                let origin = self.origin(role, k);
+                self.faces.push(Face { ring, origin });
+            }
+            Role::Strips(_) => self.add_strips(k, place),
+            Role::None => {}
+        }
+    }
+
+    /// Adds the triangles of strips, which are separated by -1. Every second triangle is turned.
+    #[expect(clippy::float_cmp, reason = "-1 is written exactly")]
+    fn add_strips(&mut self, k: usize, place: impl Fn() -> Place) {
+        let origin = self.origin(Role::Strips(0), k);
+        let numbers = std::mem::take(&mut self.numbers);
+        for strip in numbers.split(|&number| number == -1.0) {
+            for (turn, corners) in strip.windows(3).enumerate() {
+                let mut ring = indices(corners).unwrap_or_else(|what| {
+                    self.draft.refuse_face(place(), what);
+                    Vec::new()
+                });
+                if turn % 2 == 1 && !ring.is_empty() {
+                    ring.swap(0, 1);
+                }
+                self.faces.push(Face { ring, origin });
+            }
+        }
+    }
+
+    /// Notes what is wrong with an element, and keeps its number.
+    fn add_broken(&mut self, role: Role, k: usize, place: Place, what: String) {
+        if let Role::Vertex(_) = role {
+            self.draft.refuse_vertex(place, what);
+            self.draft.builder.add_vertex(DVec3::NAN);
+            self.vertex_count += 1;
+            return;
+        }
+        if let Role::Face(_) = role {
+            self.draft.refuse_face(place, what);
+            let origin = self.origin(role, k);
+            self.faces.push(Face { ring: Vec::new(), origin });
+        } else {
+            self.draft.fault(place, what);
+        }
+    }
+
+    fn origin(&self, role: Role, k: usize) -> Origin {
+        match role {
+            _ if self.source.is_text() => Origin::Line(self.source.line),
+            Role::Strips(_) => Origin::Strips(k),
+            _ => Origin::Face(k),
+        }
+    }
+
+    fn finish(mut self) -> Result<Loaded, ReadError> {
+        let object = self.draft.builder.add_object("default");
+        let material = self.draft.builder.add_material(Material::new("default"));
+        let count = self.vertex_count;
+        let mut origins = Vec::with_capacity(self.faces.len());
+        for Face { ring, origin } in self.faces {
+            origins.push(origin);
+            if let Some(unknown) = ring.iter().find(|&&index| index >= count)
+                && !self.draft.drops
+            {
+                let known =
+                    if count == 0 { "there are none".to_owned() } else { format!("they are 0 to {}", count - 1) };
+                self.draft.refuse_face(origin.place(), format_args!("there is no vertex {unknown}; {known}"));
+                self.draft.add_broken_face(object, material);
+            } else if ring.is_empty() {
+                self.draft.add_broken_face(object, material);
+            } else {
+                self.draft.add_face(vec![ring], object, material);
+            }
+        }
+        self.draft.finish(|k| origins.get(k).map_or(Place::File, |origin| origin.place()), |_| None)
+    }
+}
+
+/// The vertices that a face names.
+fn indices(numbers: &[f64]) -> Result<Vec<usize>, String> {
+    if numbers.len() < 3 {
+        return Err(format!("a face takes at least 3 vertices, but here are {}", numbers.len()));
+    }
+    numbers
+        .iter()
+        .map(|&number| whole(number).ok_or_else(|| format!("{number} is not the index of a vertex")))
+        .collect()
+}
+
+/// What an element is read for.
+fn role(element: &Element) -> Result<Role, String> {
+    let find = |name: &str| element.properties.iter().position(|property| property.name == name);
+    let is_list = |k: usize| matches!(element.properties[k].kind, Kind::List { .. });
+    match element.name.as_str() {
+        "vertex" => {
+            let mut places = [0; 3];
+            for (place, name) in places.iter_mut().zip(["x", "y", "z"]) {
+                *place = find(name)
+                    .filter(|&k| !is_list(k))
+                    .ok_or_else(|| format!("the vertices have no number `{name}`; they take x, y and z"))?;
+            }
+            Ok(Role::Vertex(places))
+        }
+        name @ ("face" | "tristrips") => {
+            let mut lists = (0..element.properties.len()).filter(|&k| is_list(k));
+            let only = lists.next().filter(|_| lists.next().is_none());
+            let list = find("vertex_indices").or_else(|| find("vertex_index")).filter(|&k| is_list(k)).or(only);
+            let list = list.ok_or_else(|| format!("the element {name} has no list `vertex_indices`"))?;
+            Ok(if name == "face" { Role::Face(list) } else { Role::Strips(list) })
+        }
+        _ => Ok(Role::None),
+    }
+}
