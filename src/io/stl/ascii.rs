@@ -17,7 +17,11 @@ pub(super) fn parse(bytes: &[u8], mut draft: Draft<'_>) -> Result<Loaded, ReadEr
         line += 1;
         let text = String::from_utf8_lossy(take_line(&mut rest));
         if let Err(what) = reader.read_line(line, text.trim_matches(is_blank)) {
-            reader.draft.fault(Place::Line(line), what);
+            if reader.facet.is_some() {
+                reader.draft.refuse_face(Place::Line(line), what);
+            } else {
+                reader.draft.fault(Place::Line(line), what);
+            }
         }
     }
     reader.finish()
