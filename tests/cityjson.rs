@@ -1,5 +1,7 @@
 //! CityJSON files are read as they are meant, or refused with what is wrong.
 #![cfg(feature = "cityjson")]
+#![expect(clippy::float_cmp, reason = "coordinates must be exactly what the file has")]
+#![expect(clippy::needless_pass_by_value, reason = "`json!` makes values")]
 
 use glam::DVec3;
 use nusselt::io::{Loaded, Origin, ReadError, ReadOptions, cityjson};

@@ -1,9 +1,10 @@
 //! glTF and GLB files are read as they are meant, or refused with what is wrong.
 #![cfg(feature = "gltf")]
+#![expect(clippy::float_cmp, reason = "coordinates must be exactly what the file has")]
 
 use glam::DVec3;
 use nusselt::io::{self, Loaded, ReadError, ReadOptions, gltf};
-use nusselt::scene::{PolygonId, Scene};
+use nusselt::scene::{Material, PolygonId, Scene};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -59,8 +60,8 @@ fn read(value: &Value) -> Result<Loaded, ReadError> {
 /// The square with something else at a place, like `/nodes/0/mesh`.
 fn changed(pointer: &str, value: Value) -> Value {
     let mut file = square();
-    let (parent, key) = pointer.rsplit_once('/').unwrap();
-    match file.pointer_mut(parent).unwrap() {
+    let (parent, key) = pointer.rsplit_once('/').expect("a pointer");
+    match file.pointer_mut(parent).expect("a parent") {
         Value::Array(list) => match key.parse::<usize>() {
             Ok(k) if k < list.len() => list[k] = value,
             _ => list.push(value),
@@ -161,14 +162,14 @@ fn strips_and_fans_turn_the_same_way() {
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     };
     // Strip: 0 1 3 2 of the square; fan: 0 1 2 3.
-    for (mode, indices, expected) in [(5, [0, 1, 3, 2], [1.0; 2]), (6, [0, 1, 2, 3], [1.0; 2])] {
+    for (mode, indices) in [(5, [0, 1, 3, 2]), (6, [0, 1, 2, 3])] {
         let mut file = square();
         file["meshes"][0]["primitives"][0]["mode"] = json!(mode);
         file["accessors"][1]["count"] = json!(4);
         let mut bytes = buffer();
         bytes[96..100].copy_from_slice(&indices);
         let scene = parse_with(file.to_string().as_bytes(), &bytes).unwrap().scene;
-        assert_eq!([up(&scene, 0), up(&scene, 1)], expected);
+        assert!(up(&scene, 0) > 0.0 && up(&scene, 1) > 0.0);
     }
     // The definition of the format: p_i = { v_(i+1), v_(i+2), v_0 }.
     let mut file = square();
@@ -238,8 +239,11 @@ fn materials_have_base_colour_and_emission() {
     let materials = loaded.scene.materials();
     let names: Vec<_> = materials.iter().map(|material| material.name.as_str()).collect();
     assert_eq!(names, ["lamp", "default", "material_2"]);
-    assert!(materials[0].diffuse == [0.1, 0.2, 0.3] && materials[0].emission == [10.0, 5.0, 0.0]);
-    assert!(materials[1].diffuse == [0.5; 3] && materials[2].diffuse == [1.0; 3] && !materials[2].is_emitter());
+    let mut lamp = Material::new("lamp");
+    (lamp.diffuse, lamp.emission) = ([0.1, 0.2, 0.3], [10.0, 5.0, 0.0]);
+    let mut white = Material::new("material_2");
+    white.diffuse = [1.0; 3];
+    assert_eq!(materials, [lamp, Material::new("default"), white]);
     assert_eq!(
         loaded.warnings,
         ["test.gltf: 1 materials have textures, which are not read: their factors alone are taken"]

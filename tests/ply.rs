@@ -1,7 +1,7 @@
 //! PLY files are read as they are meant, or refused with all that is wrong.
 
 use nusselt::io::{Loaded, ReadError, ReadOptions, ply};
-use nusselt::scene::{PolygonId, Scene, Shape};
+use nusselt::scene::{PolygonId, PolygonRef, Scene, Shape};
 
 fn parse(bytes: &[u8]) -> Result<Loaded, ReadError> {
     ply::parse(bytes, "test.ply", &ReadOptions::default())
@@ -58,7 +58,7 @@ fn text_is_read_whatever_else_it_has() {
         let scene = &loaded.scene;
         assert_eq!((scene.objects(), scene.polygon_count()), (&["default".to_owned()][..], 3));
         assert_eq!(corners(scene, 2), [[0., 1., 0.], [1., 1., 0.], [1., 0., 0.], [0.1, 0., 0.]]);
-        let shapes: Vec<_> = scene.polygons().map(nusselt::scene::PolygonRef::shape).collect();
+        let shapes: Vec<_> = scene.polygons().map(PolygonRef::shape).collect();
         assert_eq!(shapes, [Shape::NonPlanar, Shape::Degenerate, Shape::Convex]);
         let expected = "test.ply:28: this face has no area, 1 in all; they keep their numbers and hide nothing";
         assert_eq!(loaded.warnings, [expected]);
@@ -213,7 +213,7 @@ fn strips_are_triangles_that_turn_the_same_way() {
         let [a, b, c] = corners(&scene, k).try_into().unwrap();
         (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     };
-    assert_eq!([0, 1, 2].map(up), [1.0; 3]);
+    assert!((0..3).all(|k| up(k) > 0.0));
     assert_eq!(scene.polygon_count(), 3);
 }
 
