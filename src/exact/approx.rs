@@ -128,7 +128,7 @@ impl Approx3 {
 
 /// The sign of a number that is off by at most `bound`, if that tells.
 #[inline]
-fn decided(x: f64, bound: f64) -> Option<Sign> {
+pub(super) fn decided(x: f64, bound: f64) -> Option<Sign> {
     if x > bound {
         Some(Sign::Positive)
     } else if x < -bound {
