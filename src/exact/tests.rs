@@ -246,18 +246,19 @@ proptest! {
 
     #[test]
     fn boxes_lie_where_they_are_told_to(
-        [normal, from, across, size] in prop::array::uniform4(vector()), far in power(-20..40), scales in prop::array::uniform2(power(-50..1)),
+        [normal, from, across, size] in prop::array::uniform4(vector()), far in power(-20..40),
+        scales in (power(-50..1), power(-50..20)),
         err in error(), at in signs(), up in -3..4i32,
     ) {
         let approx = Approx3::known(normal, err);
         let normal_at = corner(normal, DVec3::splat(err), at);
         // A corner of the box close to the plane: `across` is nearly in it.
         let across = across - normal * (normal.dot(across) / normal.dot(normal));
-        let size = size.abs() * scales[0];
+        let size = size.abs() * scales.0;
         // The corner that is lowest along the normal.
         let lowest = DVec3::from([0, 1, 2].map(|k| if normal[k] < 0.0 { -size[k] } else { 0.0 }));
         let from = from * far;
-        let low = from + across * scales[1] + lowest + normal * (f64::from(up) * U * far);
+        let low = from + across * scales.1 + lowest + normal * (f64::from(up) * U * far);
         let high = low + size;
         if let Some(told) = SeenBox::new(from, low, high).side(&approx) {
             for k in 0..8 {
@@ -294,13 +295,32 @@ proptest! {
     #[test]
     fn the_filter_of_orient3d_is_right_at_all_scales(
         [a, b, c] in prop::array::uniform3(vector()), [s, t] in prop::array::uniform2(component()), off in power(-56..0), noise in vector(),
-        scales in prop::array::uniform3(power(-400..400)), turn in 0..4usize,
+        scales in prop::array::uniform3(power(-40..5)), all in prop_oneof![3 => Just(1.0), 1 => power(-350..-320), 1 => power(-400..400)],
+        turn in 0..4usize,
     ) {
-        let mut points = [a, b, c, a + (b - a) * s + (c - a) * t + noise * off].map(|p| p * DVec3::from(scales));
+        let scales = DVec3::from(scales) * all;
+        let mut points = [a, b, c, a + (b - a) * s + (c - a) * t + noise * off].map(|p| p * scales);
         points.rotate_left(turn);
         let [p, q, r] = [1, 2, 3].map(|k| sub(&exact3(points[k]), &exact3(points[0])));
         let told = orient3d_filter(points[0], points[1], points[2], points[3]);
         prop_assert!(told.is_none_or(|told| told == sign(&dot(&p, &cross(&q, &r)))));
+    }
+
+    #[test]
+    fn the_filter_of_orient3d_is_silent_where_a_large_factor_hides_an_underflow(
+        y in 0.5..2.0f64, z in 0.5..2.0f64, factor in 0.5..2.0f64, off in power(-50..-10), exponent in -535..-525i32, axis in 0..3usize,
+    ) {
+        let turned = |x: f64, y: f64, z: f64| {
+            let mut v = [x, y, z];
+            v.rotate_right(axis);
+            DVec3::from(v)
+        };
+        let size = 2f64.powi(exponent);
+        let (far, c) = (turned(2f64.powi(660), 0.0, 0.0), turned(0.0, y * size, z * size));
+        let d = turned(0.0, y * factor * size, z * factor * (1.0 + off) * size);
+        let told = orient3d_filter(DVec3::ZERO, far, c, d);
+        let exactly = sign(&dot(&exact3(far), &cross(&exact3(c), &exact3(d))));
+        prop_assert!(told.is_none_or(|told| told == exactly));
     }
 }
 
@@ -402,6 +422,38 @@ fn vectors_of_all_widths_are_kept_as_they_are_and_decided_in_fixed_widths() {
         let off = (approx.v - exactly.v).abs().max_element();
         assert!(off <= approx.error_bound() + exactly.error_bound(), "{width} digits: {approx:?}");
     }
+}
+
+#[test]
+fn vectors_alike_in_one_or_two_components_of_their_cross_product_are_not_parallel() {
+    for digits in [1, 3, 4, 7, 10, 13] {
+        for (one, other) in [([1, 2, 3], [2, 4, 5]), ([1, 2, 0], [3, 1, 0]), ([1, 2, 0], [2, 4, 1])] {
+            for turn in 0..3 {
+                let mut arena = Arena::default();
+                let unit = arena.shifted(1, (digits - 1) * fixed::DIGIT, false);
+                let [mut v, mut w] = [one, other].map(|v| v.map(|x: i128| arena.integer(x)));
+                v = arena.scale3(unit, v);
+                v.rotate_left(turn);
+                w.rotate_left(turn);
+                assert_eq!(arena.parallel(v, w), Sign::Zero, "{digits} digits");
+                let [kept_v, kept_w] = [v, w].map(|vector| {
+                    let (mark, one) = (arena.mark(), arena.integer(1));
+                    let copy = arena.scale3(one, vector);
+                    arena.keep3(mark, copy)
+                });
+                assert_eq!(arena.kept_parallel(&kept_v, &kept_w), Sign::Zero, "{digits} digits");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_position_at_0_has_an_error_that_is_not_negative() {
+    let frame = Frame::new(BitRange::of([DVec3::ONE]), DVec3::ONE);
+    let mut arena = Arena::default();
+    let (x, w) = (frame.relative(&mut arena, DVec3::ZERO), arena.integer(1));
+    let (position, err) = frame.position(&mut arena, x, w);
+    assert!(position == DVec3::ZERO && err.cmpge(DVec3::ZERO).all(), "{position} {err}");
 }
 
 #[test]

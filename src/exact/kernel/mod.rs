@@ -477,6 +477,24 @@ mod tests {
         counted("plane_side", FILTER, &|k| k.plane_side(&Point::Given(a), &level).is_positive());
         counted("plane_side", FILTER, &|k| k.plane_side(&Point::Given(v(0.0, 0.0, 4.5)), &level).is_zero());
         counted("plane_side", FIXED, &|k| k.plane_side(&Point::Given(a + (b - off)), &plane).is_zero());
+        // Where an edge of the plane crosses another plane, the edge given by other points.
+        let cut = Point::EdgePlane([a + (a - b), b + (b - a)], Plane::Axis { axis: 0, value: 1.3 });
+        counted("plane_side", FIXED, &|k| k.plane_side(&cut, &plane).is_zero());
+        counted("plane_side", FILTER, &|k| k.plane_side(&cut, &level).is_positive());
+        counted("plane_side", FILTER, &|k| k.plane_side(&cut, &Plane::Axis { axis: 2, value: 5.0 }).is_negative());
+    }
+
+    #[test]
+    fn coordinates_that_are_not_finite_are_refused() {
+        let plane = |value| Plane::Axis { axis: 2, value };
+        for (z, value) in [(f64::INFINITY, 1.0), (1.0, f64::INFINITY), (f64::NAN, 1.0), (1.0, f64::NEG_INFINITY)] {
+            let side = std::panic::catch_unwind(|| {
+                Kernel::new([], DVec3::ONE).plane_side(&Point::Given(v(0.0, 0.0, z)), &plane(value))
+            });
+            assert!(side.is_err(), "{z} {value}");
+        }
+        assert!(std::panic::catch_unwind(|| Kernel::new([v(f64::NAN, 0.0, 0.0)], DVec3::ONE)).is_err());
+        assert_eq!(Kernel::new([], DVec3::ONE).eye(), DVec3::ONE);
     }
 
     #[test]
