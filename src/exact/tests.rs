@@ -248,7 +248,7 @@ proptest! {
     fn boxes_lie_where_they_are_told_to(
         [normal, from, across, size] in prop::array::uniform4(vector()), far in power(-20..40),
         scales in (power(-50..1), power(-50..20)),
-        err in error(), at in signs(), up in -3..4i32,
+        err in error(), at in signs(), gap in prop_oneof![Just(0.0), power(-60..5)],
     ) {
         let approx = Approx3::known(normal, err);
         let normal_at = corner(normal, DVec3::splat(err), at);
@@ -258,7 +258,7 @@ proptest! {
         // The corner that is lowest along the normal.
         let lowest = DVec3::from([0, 1, 2].map(|k| if normal[k] < 0.0 { -size[k] } else { 0.0 }));
         let from = from * far;
-        let low = from + across * scales.1 + lowest + normal * (f64::from(up) * U * far);
+        let low = from + across * scales.1 + lowest + normal * gap;
         let high = low + size;
         if let Some(told) = SeenBox::new(from, low, high).side(&approx) {
             for k in 0..8 {
@@ -307,17 +307,18 @@ proptest! {
     }
 
     #[test]
-    fn the_filter_of_orient3d_is_silent_where_a_large_factor_hides_an_underflow(
-        y in 0.5..2.0f64, z in 0.5..2.0f64, factor in 0.5..2.0f64, off in power(-50..-10), exponent in -535..-525i32, axis in 0..3usize,
+    fn the_filter_of_orient3d_is_silent_or_right_if_one_edge_is_much_longer(
+        c in vector(), [s, t] in prop::array::uniform2(0.5..2.0f64), steep in prop::array::uniform2(power(-12..1)),
+        (long, short) in prop_oneof![(Just(1.0), power(-40..-5)), (Just(2f64.powi(660)), power(-540..-525))],
+        off in power(-56..-5), noise in vector(), turn in 0..3usize, swap: bool,
     ) {
-        let turned = |x: f64, y: f64, z: f64| {
-            let mut v = [x, y, z];
-            v.rotate_right(axis);
-            DVec3::from(v)
-        };
-        let size = 2f64.powi(exponent);
-        let (far, c) = (turned(2f64.powi(660), 0.0, 0.0), turned(0.0, y * size, z * size));
-        let d = turned(0.0, y * factor * size, z * factor * (1.0 + off) * size);
+        let mut along = [1.0, steep[0], -steep[1]];
+        along.rotate_left(turn);
+        let along = DVec3::from(along);
+        // Nearly in one plane with the long edge; products of short ones may underflow.
+        let d = (c * s + along * t + noise * off) * short;
+        let (c, d) = if swap { (d, c * short) } else { (c * short, d) };
+        let far = along * long;
         let told = orient3d_filter(DVec3::ZERO, far, c, d);
         let exactly = sign(&dot(&exact3(far), &cross(&exact3(c), &exact3(d))));
         prop_assert!(told.is_none_or(|told| told == exactly));
