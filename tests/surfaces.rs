@@ -101,7 +101,7 @@ fn nearest(corners: &[DVec3], p: DVec3) -> DVec3 {
         return foot;
     }
     let ends = sides.iter().map(|[a, b]| a + (b - a) * ((p - a).dot(b - a) / a.distance_squared(*b)).clamp(0.0, 1.0));
-    ends.min_by(|a, b| a.distance(p).total_cmp(&b.distance(p))).unwrap()
+    ends.min_by(|a, b| a.distance(p).total_cmp(&b.distance(p))).expect("a polygon has sides")
 }
 
 #[test]
