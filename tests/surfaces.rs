@@ -6,6 +6,7 @@ use common::Faces;
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::contour::{Domain, SurfaceError, Viewpoint};
+use nusselt::exact::{Sign, orient3d};
 use nusselt::scene::{PieceId, PolygonId, Side};
 
 #[test]
@@ -89,4 +90,61 @@ fn nowhere_is_on_no_surface() {
     }
     let unknown = Viewpoint::on_surface(&scene, PolygonId(1), Side::Front, DVec3::ZERO).unwrap_err();
     assert_eq!(unknown, SurfaceError::UnknownPolygon { polygon: PolygonId(1), count: 1 });
+}
+
+/// The point of a convex polygon nearest to another one, by trying all sides.
+fn nearest(corners: &[DVec3], p: DVec3) -> DVec3 {
+    let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+    let foot = p - normal * normal.dot(p - corners[0]);
+    let sides: Vec<[DVec3; 2]> = (0..corners.len()).map(|k| [corners[k], corners[(k + 1) % corners.len()]]).collect();
+    if sides.iter().all(|[a, b]| normal.cross(b - a).dot(foot - a) >= 0.0) {
+        return foot;
+    }
+    let ends = sides.iter().map(|[a, b]| a + (b - a) * ((p - a).dot(b - a) / a.distance_squared(*b)).clamp(0.0, 1.0));
+    ends.min_by(|a, b| a.distance(p).total_cmp(&b.distance(p))).expect("a polygon has sides")
+}
+
+#[test]
+fn the_eye_is_at_the_nearest_point_and_not_behind_it() {
+    let mut random = 1u64;
+    let mut next = || {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (random >> 11) as f64 / 2f64.powi(52) - 1.0
+    };
+    let mut moved = 0;
+    for (exponent, offset) in (0..40).flat_map(|_| [(0, 0.0), (0, 7.0), (600, 3.0), (-600, 3.0)]) {
+        let scale = 2f64.powi(exponent);
+        let offset = DVec3::new(offset, -offset, offset * 0.5);
+        let mut point = |size: f64| DVec3::new(next(), next(), next()) * size;
+        let (a, u, v) = (point(1.0) + offset, point(2.0), point(2.0));
+        if u.cross(v).length() < 0.2 {
+            continue;
+        }
+        // A parallelogram: cut in two if rounding folds it, so a triangle.
+        let corners = [a, a + u, a + v];
+        let near = a + point(4.0);
+        let mut faces = Faces::default();
+        faces.face(&corners.map(|p| p * scale));
+        let scene = faces.build();
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+        for side in [Side::Front, Side::Back] {
+            let eye = Viewpoint::on_surface(&scene, PolygonId(0), side, near * scale).unwrap().eye();
+            let expected = nearest(&corners, near);
+            assert!((eye / scale).distance(expected) < 1e-14, "{eye} {expected} {scale}");
+            let [a, b, c] = corners.map(|p| p * scale);
+            // Scaled back, so that exact signs and not only expansions of what underflows are asked.
+            let above = orient3d(a / scale, b / scale, c / scale, eye / scale);
+            let behind = if side == Side::Front { Sign::Negative } else { Sign::Positive };
+            assert_ne!(above, behind, "{eye}");
+            moved += usize::from(above != Sign::Zero);
+            // A sensor there is on that polygon, whatever the length of its normal.
+            for length in [1.0, 1e-200, 1e200] {
+                let found = Viewpoint::surface_at(&scene, eye, normal * length);
+                assert_eq!(found, Some((PieceId(0), Side::Front)), "{eye} {length}");
+            }
+            let off = eye + normal.normalize() * (1e-6 * scene.diagonal());
+            assert_eq!(Viewpoint::surface_at(&scene, off, normal), None);
+        }
+    }
+    assert!(moved > 100, "most planes hold few points");
 }

@@ -196,6 +196,87 @@ fn the_quadtree_changes_no_sum() {
     }
 }
 
+#[test]
+fn every_level_of_the_quadtree_quarters_all_squares() {
+    let scene = Scene::builder().build().unwrap();
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    for (depth, cells) in [(0, 8), (1, 32), (2, 112), (3, 416)] {
+        let options = super::ViewOptions { quadtree_depth: Some(depth), ..Default::default() };
+        let image = bsp.view_with(&Viewpoint::free(DVec3::ONE), &Domain::Sphere, &options).unwrap();
+        check(&image);
+        assert_eq!(image.cells().len(), cells, "level {depth}");
+        if depth == 0 {
+            continue;
+        }
+        // Eight octants of three quarter faces; one of these is in two leaves, so squares on its diagonal are halves.
+        // A square of size h takes h^2 / 3^(3/2) at a corner of the cube to h^2 in the middle of a face.
+        let square = 0.25f64.powi(depth as i32 - 1);
+        for cell in image.cells() {
+            let solid_angle = cell.solid_angle();
+            assert!(solid_angle > square * 0.09 && solid_angle < square, "level {depth}: {solid_angle}");
+        }
+    }
+}
+
+#[test]
+fn splitters_are_drawn_once_along_their_whole_length() {
+    let scene = Scene::builder().build().unwrap();
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    let options = super::ViewOptions { quadtree_depth: Some(0), ..Default::default() };
+    // Three great circles; above the horizon that itself and halves of two others, or of three others.
+    let tilted = Domain::Hemisphere(DVec3::new(1.0, 2.0, 3.0));
+    for (domain, turns) in [(Domain::Sphere, 3.0), (Domain::Hemisphere(DVec3::Z), 2.0), (tilted, 2.5)] {
+        let image = bsp.view_with(&Viewpoint::free(DVec3::ONE), &domain, &options).unwrap();
+        let arcs = image.tree_arcs();
+        let length: f64 = arcs.iter().map(|arc| arc.ends[0].angle_between(arc.ends[1])).sum();
+        assert!((length - turns * 2.0 * PI).abs() < 1e-12, "{domain:?}: {length}");
+        let middles = arcs.iter().map(|arc| (arc.ends[0] + arc.ends[1]).normalize());
+        let middles: BTreeSet<_> = middles.map(|m| (m * 1e9).round().as_i64vec3().to_array()).collect();
+        assert_eq!(middles.len(), arcs.len(), "{domain:?}: an arc twice");
+    }
+}
+
+#[test]
+fn rays_meet_the_plane_of_what_is_seen() {
+    let (scene, _) = room(1.0, DVec3::new(5.0, -7.0, 11.0));
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    let eye = DVec3::new(5.1, -6.8, 11.3);
+    let image = bsp.view(&Viewpoint::free(eye), &Domain::Sphere).unwrap();
+    for cell in image.cells() {
+        let inside: DVec3 = cell.arcs().iter().map(|arc| image.tree.directions.unit(arc.from)).sum();
+        let point = cell.point_at(inside.normalize()).expect("a closed room");
+        let corners: Vec<DVec3> = scene.piece(cell.piece().unwrap()).points().collect();
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize();
+        assert!(normal.dot(point - corners[0]).abs() < 1e-12, "{point}");
+        assert!((point - eye).normalize().distance(inside.normalize()) < 1e-12, "{point}");
+    }
+}
+
+#[test]
+fn what_a_view_takes_is_counted() {
+    let stats = |scale: f64, eye: DVec3| {
+        let (scene, _) = room(scale, DVec3::ZERO);
+        let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+        let image = bsp.view(&Viewpoint::free(eye * scale), &Domain::Sphere).unwrap();
+        let seen: BTreeSet<_> = image.cells().filter_map(super::Cell::piece).collect();
+        assert!(image.stats().inserted >= seen.len() && image.stats().visited_nodes as usize >= seen.len());
+        image.stats().predicates
+    };
+    let generic = stats(1.0, DVec3::new(0.123, 0.234, 0.345));
+    let special = stats(1.0, DVec3::new(0.0, 0.5, -1.0));
+    assert_eq!(generic.arbitrary, 0);
+    assert_eq!(special.arbitrary, 0);
+    assert!(special.identity > 0 && special.fixed > 0, "{special:?}");
+    // Of the calls the filter decides most, and it decides no more than there are.
+    assert!(special.filter > special.undecided() && special.filter < 100_000, "{special:?}");
+    // The same on a grid of which all coordinates take a thousand bits.
+    let (scene, _) = room(1.0, DVec3::ZERO);
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    let eye = DVec3::new(f64::from_bits(1), 0.5, -1.0);
+    let wide = *bsp.view(&Viewpoint::free(eye), &Domain::Sphere).unwrap().stats();
+    assert!(wide.predicates.arbitrary > 0, "{wide:?}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 

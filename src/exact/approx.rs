@@ -73,21 +73,22 @@ impl Approx3 {
     }
 
     /// The cross product of two approximate vectors.
+    pub(crate) fn cross(self, other: Self) -> Self {
+        Self::normalised(self.v.cross(other.v), self.cross_error(&other))
+    }
+
+    /// True if the two vectors are certainly not parallel.
+    pub(crate) fn not_parallel(&self, other: &Self) -> bool {
+        self.v.cross(other.v).abs().max_element() > self.cross_error(other)
+    }
+
+    /// A bound on the error of each component of the computed cross product.
     ///
     /// With components below 2 and errors `e1, e2 <= 1/8`: each product is off by at most
     /// `2 e1 + 2 e2 + e1 e2` and by `4 u` of rounding, the difference by `8 u` more; in all at most
     /// `4.25 (e1 + e2) + 16.1 u`.
-    pub(crate) fn cross(self, other: Self) -> Self {
-        let err = (self.slack + other.slack) / 8.0;
-        Self::normalised(self.v.cross(other.v), 4.5 * err + 20.0 * U)
-    }
-
-    /// True if the two vectors are certainly not parallel.
-    ///
-    /// Each component of the cross product is off by at most the bound of [`Approx3::cross`].
-    pub(crate) fn not_parallel(&self, other: &Self) -> bool {
-        let bound = 4.5 * (self.slack + other.slack) / 8.0 + 20.0 * U;
-        self.v.cross(other.v).abs().max_element() > bound
+    fn cross_error(&self, other: &Self) -> f64 {
+        4.5 * (self.slack + other.slack) / 8.0 + 20.0 * U
     }
 
     /// True if the bound on the error is so large that it pays to compute the vector from integers.
@@ -128,7 +129,7 @@ impl Approx3 {
 
 /// The sign of a number that is off by at most `bound`, if that tells.
 #[inline]
-fn decided(x: f64, bound: f64) -> Option<Sign> {
+pub(super) fn decided(x: f64, bound: f64) -> Option<Sign> {
     if x > bound {
         Some(Sign::Positive)
     } else if x < -bound {
@@ -220,6 +221,11 @@ mod tests {
             prop_assert_eq!(known[3].0.det_sign(&y, &x), Some(Sign::Negative));
             prop_assert_eq!(x.det_sign(&x, &y), None);
         }
+    }
+
+    #[test]
+    fn the_unit_roundoff_is_half_of_the_step_from_1() {
+        assert!(U > 0.0 && 1.0 + U == 1.0 && 1.0 + U * (1.0 + f64::EPSILON) > 1.0);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Boxes against planes in floating point: on which side a whole box certainly lies.
 
-use super::approx::{Approx3, U};
+use super::approx::{Approx3, U, decided};
 use super::sign::Sign;
 use glam::DVec3;
 
@@ -35,13 +35,7 @@ impl SeenBox {
     pub(crate) fn side(&self, normal: &Approx3) -> Option<Sign> {
         let height = normal.v.dot(self.center);
         let reach = normal.v.abs().dot(self.half) + self.margin + normal.slack * self.size;
-        if height > reach {
-            Some(Sign::Positive)
-        } else if height < -reach {
-            Some(Sign::Negative)
-        } else {
-            None
-        }
+        decided(height, reach)
     }
 }
 

@@ -148,6 +148,13 @@ mod tests {
     use crate::exact::Sign;
 
     #[test]
+    fn a_range_holds_what_is_on_its_grid_and_no_longer() {
+        let range = BitRange::of([DVec3::new(2.5, -0.25, 0.0)]);
+        assert!([0.0, 0.75, -3.75, 2.25].into_iter().all(|x| range.holds(x)));
+        assert!(![0.125, 4.0, -2.125, 1e-300].into_iter().any(|x| range.holds(x)));
+    }
+
+    #[test]
     fn narrow_and_wide_frames_agree() {
         let mut arena = Arena::default();
         let points = [DVec3::new(1.5, -3.25, 0.1), DVec3::new(-0.0, 7e-9, 1e4), DVec3::new(0.3, 0.3, -0.3)];

@@ -16,6 +16,8 @@ mod kernel;
 mod orient;
 mod sign;
 mod stats;
+#[cfg(test)]
+mod tests;
 mod zeros;
 
 pub use definition::{Direction, Plane, Point, Splitter};

@@ -1,7 +1,7 @@
 //! On which side of the plane through three points a fourth lies.
 
 use super::Sign;
-use super::approx::U;
+use super::approx::{U, decided};
 use super::arena::Arena;
 use super::fixed;
 use super::frame::{BitRange, Frame};
@@ -53,14 +53,7 @@ pub(crate) fn orient3d_filter(a: DVec3, b: DVec3, c: DVec3, d: DVec3) -> Option<
     if !(1e-180..1e120).contains(&permanent) || p.abs().max_element() > 1e120 {
         return None;
     }
-    let bound = 10.0 * U * permanent;
-    if det > bound {
-        Some(Sign::Positive)
-    } else if det < -bound {
-        Some(Sign::Negative)
-    } else {
-        None
-    }
+    decided(det, 10.0 * U * permanent)
 }
 
 /// `robust` works with differences and products of three of them: with coordinates that are

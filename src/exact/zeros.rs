@@ -170,6 +170,7 @@ mod tests {
         assert!(ZeroComponents::shared([axes("xy"), axes("yz"), axes("y")]));
         assert!(!ZeroComponents::shared([axes("xy"), axes("yz"), axes("xz")]));
         assert!(axes("xy").cover(axes("z")) && axes("xyz").cover(axes("")));
+        assert!(axes("xy").cover(axes("yz")));
         assert!(!axes("xy").cover(axes("x")) && !axes("").cover(axes("yz")));
     }
 

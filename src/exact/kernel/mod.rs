@@ -5,6 +5,10 @@
 //! a proven bound decides nearly all the rest; then integers on a common grid, of fixed width where they
 //! fit, of any width where they do not.
 
+mod ids;
+
+pub use ids::{DirectionId, SplitterId};
+
 use super::approx::{Approx3, U};
 use super::approximate::{ApproxPlane, ApproxPoint};
 use super::arena::{Arena, Kept3, Num3};
@@ -15,6 +19,7 @@ use super::orient::{orient3d_expansions, orient3d_filter};
 use super::zeros::{ZeroComponents, defined_on, have_common_end, point_in_plane};
 use super::{PredicateStats, Sign};
 use glam::DVec3;
+use ids::Table;
 use std::cmp::Ordering;
 
 /// How two great circles, as oriented by their normals, lie.
@@ -77,44 +82,6 @@ pub struct Kernel {
     stats: PredicateStats,
 }
 
-/// A splitter that a [`Kernel`] knows; only that kernel knows what it means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct SplitterId(u32);
-
-/// A direction that a [`Kernel`] knows; only that kernel knows what it means.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct DirectionId(u32);
-
-/// What a kernel knows, each kind by number. What the filter reads lies side by side, apart from the much
-/// larger rest.
-#[derive(Clone, Debug)]
-struct Table<T> {
-    approx: Vec<Approx3>,
-    definitions: Vec<T>,
-    zeros: Vec<ZeroComponents>,
-    /// The integer vectors, once they were needed.
-    exact: Vec<Option<Kept3>>,
-}
-
-impl<T> Table<T> {
-    const EMPTY: Self = Self { approx: Vec::new(), definitions: Vec::new(), zeros: Vec::new(), exact: Vec::new() };
-
-    fn push(&mut self, definition: T, approx: Approx3, zeros: ZeroComponents) -> u32 {
-        self.approx.push(approx);
-        self.definitions.push(definition);
-        self.zeros.push(zeros);
-        self.exact.push(None);
-        self.exact.len() as u32 - 1
-    }
-
-    fn clear(&mut self) {
-        self.approx.clear();
-        self.definitions.clear();
-        self.zeros.clear();
-        self.exact.clear();
-    }
-}
-
 impl Kernel {
     /// Predicates seen from `eye`, on a grid that holds the given points. Other points are as right, but
     /// slower where integers must decide.
@@ -149,32 +116,6 @@ impl Kernel {
     /// Starts counting anew.
     pub fn reset_stats(&mut self) {
         self.stats = PredicateStats::default();
-    }
-
-    /// Takes in a splitter for calls that come often: it is approximated once, and its integers are
-    /// made at most once.
-    pub fn add_splitter(&mut self, definition: &Splitter) -> SplitterId {
-        let approx = self.approx_splitter(definition);
-        SplitterId(self.splitters.push(*definition, approx, ZeroComponents::of_splitter(definition, self.eye)))
-    }
-
-    /// Takes in a direction for calls that come often.
-    pub fn add_direction(&mut self, definition: &Direction) -> DirectionId {
-        let approx = self.approx_direction(definition);
-        DirectionId(self.directions.push(*definition, approx, ZeroComponents::of_direction(definition, self.eye)))
-    }
-
-    /// Forgets all splitters and directions taken in; their ids mean nothing any more. The memory is
-    /// kept for the next ones.
-    pub fn clear(&mut self) {
-        self.splitters.clear();
-        self.directions.clear();
-        self.arena.clear();
-    }
-
-    /// The normal of a splitter taken in before, in floating point.
-    pub(crate) fn approx_normal(&self, splitter: SplitterId) -> &Approx3 {
-        &self.splitters.approx[splitter.0 as usize]
     }
 
     fn approx_splitter(&mut self, definition: &Splitter) -> Approx3 {
@@ -231,37 +172,6 @@ impl Kernel {
         })
     }
 
-    /// The same for a direction and a splitter taken in before.
-    #[inline]
-    pub fn side_of(&mut self, direction: DirectionId, splitter: SplitterId) -> Sign {
-        let approx = &self.directions.approx[direction.0 as usize];
-        if let Some(sign) = approx.dot_sign(&self.splitters.approx[splitter.0 as usize]) {
-            self.stats.filter += 1;
-            return sign;
-        }
-        self.undecided_side_of(direction, splitter)
-    }
-
-    #[cold]
-    fn undecided_side_of(&mut self, direction: DirectionId, splitter: SplitterId) -> Sign {
-        let (d, s) = (direction.0 as usize, splitter.0 as usize);
-        if self.directions.zeros[d].cover(self.splitters.zeros[s])
-            || defined_on(&self.directions.definitions[d], &self.splitters.definitions[s])
-        {
-            self.stats.identity += 1;
-            return Sign::Zero;
-        }
-        self.make_splitter(splitter);
-        self.make_direction(direction);
-        let (Some(direction), Some(normal)) = (&self.directions.exact[d], &self.splitters.exact[s]) else {
-            unreachable!("both were made")
-        };
-        let arbitrary = self.arena.arbitrary_signs();
-        let sign = self.arena.kept_dot_sign(normal, direction);
-        self.count_stage(arbitrary);
-        sign
-    }
-
     /// The orientation of three splitters: the sign of `n_1 . (n_2 x n_3)`.
     pub fn orientation(&mut self, splitters: [&Splitter; 3]) -> Sign {
         let [a, b, c] = splitters;
@@ -291,70 +201,6 @@ impl Kernel {
         })
     }
 
-    /// The same for splitters taken in before.
-    #[inline]
-    pub fn orientation_of(&mut self, splitters: [SplitterId; 3]) -> Sign {
-        let [a, b, c] = splitters.map(|s| &self.splitters.approx[s.0 as usize]);
-        if let Some(sign) = a.det_sign(b, c) {
-            self.stats.filter += 1;
-            return sign;
-        }
-        self.undecided_orientation_of(splitters)
-    }
-
-    #[cold]
-    fn undecided_orientation_of(&mut self, splitters: [SplitterId; 3]) -> Sign {
-        // Of definitions taken in twice, integers find that they are the same.
-        let [a, b, c] = splitters;
-        let zeros = splitters.map(|s| self.splitters.zeros[s.0 as usize]);
-        let known = |s: SplitterId| &self.splitters.definitions[s.0 as usize];
-        if a == b || b == c || c == a || ZeroComponents::shared(zeros) || have_common_end(splitters.map(known)) {
-            self.stats.identity += 1;
-            return Sign::Zero;
-        }
-        for s in splitters {
-            self.make_splitter(s);
-        }
-        // By reference: copies of what was just written wait for each other.
-        let [Some(a), Some(b), Some(c)] = splitters.map(|s| self.splitters.exact[s.0 as usize].as_ref()) else {
-            unreachable!("all were made")
-        };
-        let arbitrary = self.arena.arbitrary_signs();
-        let sign = self.arena.kept_det_sign(a, b, c);
-        self.count_stage(arbitrary);
-        sign
-    }
-
-    /// Makes the integers of a splitter, at the first call. They may come from different grids: a vector
-    /// stands for its positive multiples too.
-    #[inline]
-    fn make_splitter(&mut self, id: SplitterId) {
-        if self.splitters.exact[id.0 as usize].is_none() {
-            self.make_new_splitter(id);
-        }
-    }
-
-    #[cold]
-    fn make_new_splitter(&mut self, id: SplitterId) {
-        let definition = self.splitters.definitions[id.0 as usize];
-        let range = range_of_splitter(self.range, &definition);
-        self.splitters.exact[id.0 as usize] = Some(self.keep(range, |exact| exact.keep_splitter(&definition)));
-    }
-
-    #[inline]
-    fn make_direction(&mut self, id: DirectionId) {
-        if self.directions.exact[id.0 as usize].is_none() {
-            self.make_new_direction(id);
-        }
-    }
-
-    #[cold]
-    fn make_new_direction(&mut self, id: DirectionId) {
-        let definition = self.directions.definitions[id.0 as usize];
-        let range = range_of_direction(self.range, &definition);
-        self.directions.exact[id.0 as usize] = Some(self.keep(range, |exact| exact.keep_direction(&definition)));
-    }
-
     /// Whether two splitters are one great circle.
     pub fn compare_circles(&mut self, a: &Splitter, b: &Splitter) -> CircleRelation {
         if a == b {
@@ -371,28 +217,6 @@ impl Kernel {
             let (m, n) = (exact.splitter(a), exact.splitter(b));
             exact.arena.parallel(m, n)
         }))
-    }
-
-    /// The same for splitters taken in before.
-    pub fn compare_circles_of(&mut self, a: SplitterId, b: SplitterId) -> CircleRelation {
-        if a == b {
-            self.stats.identity += 1;
-            return CircleRelation::Same;
-        }
-        let [p, q] = [a, b].map(|s| &self.splitters.approx[s.0 as usize]);
-        if p.not_parallel(q) {
-            self.stats.filter += 1;
-            return CircleRelation::Different;
-        }
-        self.make_splitter(a);
-        self.make_splitter(b);
-        let [Some(a), Some(b)] = [a, b].map(|s| self.splitters.exact[s.0 as usize].as_ref()) else {
-            unreachable!("both were made")
-        };
-        let arbitrary = self.arena.arbitrary_signs();
-        let sign = self.arena.kept_parallel(a, b);
-        self.count_stage(arbitrary);
-        CircleRelation::of(sign)
     }
 
     /// Where `other` lies on a great circle, seen from `from`; both must lie on it.
@@ -653,6 +477,24 @@ mod tests {
         counted("plane_side", FILTER, &|k| k.plane_side(&Point::Given(a), &level).is_positive());
         counted("plane_side", FILTER, &|k| k.plane_side(&Point::Given(v(0.0, 0.0, 4.5)), &level).is_zero());
         counted("plane_side", FIXED, &|k| k.plane_side(&Point::Given(a + (b - off)), &plane).is_zero());
+        // Where an edge of the plane crosses another plane, the edge given by other points.
+        let cut = Point::EdgePlane([a + (a - b), b + (b - a)], Plane::Axis { axis: 0, value: 1.3 });
+        counted("plane_side", FIXED, &|k| k.plane_side(&cut, &plane).is_zero());
+        counted("plane_side", FILTER, &|k| k.plane_side(&cut, &level).is_positive());
+        counted("plane_side", FILTER, &|k| k.plane_side(&cut, &Plane::Axis { axis: 2, value: 5.0 }).is_negative());
+    }
+
+    #[test]
+    fn coordinates_that_are_not_finite_are_refused() {
+        let plane = |value| Plane::Axis { axis: 2, value };
+        for (z, value) in [(f64::INFINITY, 1.0), (1.0, f64::INFINITY), (f64::NAN, 1.0), (1.0, f64::NEG_INFINITY)] {
+            let side = std::panic::catch_unwind(|| {
+                Kernel::new([], DVec3::ONE).plane_side(&Point::Given(v(0.0, 0.0, z)), &plane(value))
+            });
+            assert!(side.is_err(), "{z} {value}");
+        }
+        assert!(std::panic::catch_unwind(|| Kernel::new([v(f64::NAN, 0.0, 0.0)], DVec3::ONE)).is_err());
+        assert_eq!(Kernel::new([], DVec3::ONE).eye(), DVec3::ONE);
     }
 
     #[test]
