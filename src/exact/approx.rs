@@ -225,7 +225,8 @@ mod tests {
 
     #[test]
     fn the_unit_roundoff_is_half_of_the_step_from_1() {
-        assert!(U > 0.0 && 1.0 + U == 1.0 && 1.0 + U * (1.0 + f64::EPSILON) > 1.0);
+        let next = |x: f64| (1.0 + x).to_bits() - 1.0_f64.to_bits();
+        assert_eq!((next(U), next(U * (1.0 + f64::EPSILON))), (0, 1));
     }
 
     #[test]

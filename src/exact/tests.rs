@@ -328,6 +328,40 @@ proptest! {
     }
 }
 
+proptest! {
+    /// The first edge runs along an axis, so that one row of the determinant counts; the others are nearly parallel seen along it, and as
+    /// short as one likes. Which way they turn depends on what rounding does to the differences from the first point.
+    #[test]
+    fn the_filter_of_orient3d_is_silent_or_right_if_differences_are_rounded(
+        a in vector(), axis in 0..3usize, ahead in vector(), scale in power(-60..60), long in power(-30..30),
+        [s, t] in prop::array::uniform2(3.0..40.0f64),
+    ) {
+        let mut b = a;
+        b[axis] += long;
+        let [c, d] = [s, t].map(|times| a + ahead * times);
+        let [a, b, c, d] = [a, b, c, d].map(|p| p * scale);
+        let told = orient3d_filter(a, b, c, d);
+        let [p, q, r] = [b, c, d].map(|p| sub(&exact3(p), &exact3(a)));
+        let exactly = sign(&dot(&p, &cross(&q, &r)));
+        prop_assert!(told.is_none_or(|told| told == exactly));
+    }
+}
+
+#[test]
+fn a_box_far_off_is_on_a_side_only_if_the_error_of_the_normal_leaves_it_there() {
+    for err in [1e-12, 1e-6, 1e-3] {
+        for far in [1e-3, 1.0, 1e2, 1e6] {
+            // A point about half as high as the error of the normal reaches there.
+            let p = DVec3::new(0.5 * err * far, far, 0.0);
+            let told = SeenBox::new(DVec3::ZERO, p, p).side(&Approx3::known(DVec3::X, err));
+            assert_eq!(told, None, "{err} {far}");
+            let p = DVec3::new(100.0 * err * far, far, 0.0);
+            let told = SeenBox::new(DVec3::ZERO, p, p).side(&Approx3::known(DVec3::X, err));
+            assert_eq!(told, Some(Sign::Positive), "{err} {far}");
+        }
+    }
+}
+
 #[test]
 fn a_difference_rounded_by_half_a_unit_is_within_its_bound() {
     // 1 + u, exactly in the middle between two numbers.
@@ -503,7 +537,7 @@ fn directions_are_scaled_and_quotients_reach_all_exponents() {
         let (long, one) = (arena.shifted(5 << 50, shift, true), arena.integer(1));
         let direction = arena.direction([one, long, Num::ZERO]);
         // 5/8 is 0.5 to 1; the other one is 2^-(shift + 52) times 1/2 of its power, or too small.
-        assert!(direction.y == -0.625 && direction.z == 0.0, "{shift}: {direction}");
+        assert_eq!(direction.with_x(0.0), DVec3::new(0.0, -0.625, 0.0), "{shift}: {direction}");
         assert!((0.0..=2f64.powi(-(shift as i32).min(1000) - 52)).contains(&direction.x), "{shift}: {direction}");
     }
     let (five, four) = (arena.integer(5), arena.integer(-4));
