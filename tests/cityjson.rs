@@ -96,6 +96,7 @@ fn inner_rings_are_holes() {
 #[test]
 fn the_highest_level_of_detail_of_each_is_taken_or_the_one_that_is_named() {
     let level = |lod: Value, count: usize| json!({ "type": "MultiSurface", "lod": lod, "boundaries": vec![[[0, 1, 3]]; count] });
+    let whole = file;
     let file = file(json!({
         "a": { "type": "Building", "geometry": [level(json!("1.3"), 1), level(json!("2.2"), 2), level(json!(0), 4), level(json!("2.2"), 8)] },
         "b": { "type": "Building", "geometry": [level(json!(1), 16)] },
@@ -114,6 +115,11 @@ fn the_highest_level_of_detail_of_each_is_taken_or_the_one_that_is_named() {
     assert_eq!(told, ["test.json: nothing has the level of detail 3; there are 0, 1, 1.3, 2.2"]);
     let told = faults(parse_with(&file.to_string(), &options("high")));
     assert_eq!(told, ["test.json: `high` is no level of detail; one is written like 2 or 2.2"]);
+    // Also where there are more levels than a message names.
+    let many: Vec<_> = (0..20).map(|lod| level(json!(lod), 1)).collect();
+    let many = whole(json!({ "a": { "type": "Building", "geometry": many } })).to_string();
+    assert!(faults(parse_with(&many, &options("99")))[0].contains("nothing has the level of detail 99"));
+    assert_eq!(parse_with(&many, &options("19")).unwrap().scene.polygon_count(), 1);
     let loaded = parse_with(&file.to_string(), &options("1.3")).unwrap();
     assert_eq!(
         loaded.warnings,

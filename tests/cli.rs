@@ -527,3 +527,25 @@ fn quiet_says_nothing() {
         folder.run("contour box.obj --eye 100,0,100 --normal 0,1,0", 0).contains("on the front of polygon 0 (floor)")
     );
 }
+
+#[test]
+fn materials_of_one_name_are_written_under_names_of_their_own() {
+    use nusselt::io::{ReadOptions, mtl, obj};
+    use nusselt::scene::Material;
+    let named = |name: &str, red: f64| Material { diffuse: [red, 0.0, 0.0], ..Material::new(name) };
+    let materials = [named("m", 0.1), named("m", 0.2), named("m.1", 0.3), named("", 0.4), named("default", 0.5)];
+    let names = mtl::names(&materials);
+    assert_eq!(names, ["m", "m.1", "m.1.1", "default", "default.1"]);
+    let mut library = Vec::new();
+    mtl::write(&mut library, &materials).expect("memory takes all");
+    let uses: Vec<String> = names.iter().map(|name| format!("usemtl {name}\nf 1 2 3\n")).collect();
+    let uses = uses.concat();
+    let text = format!("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n{uses}");
+    let loaded =
+        obj::parse(text.as_bytes(), "a.obj", &ReadOptions::default(), |_| Ok(library.clone())).expect("it reads");
+    let reds: Vec<f64> = loaded.scene.polygons().map(|polygon| polygon.material().diffuse[0]).collect();
+    assert!(
+        reds.iter().zip([0.1_f64, 0.2, 0.3, 0.4, 0.5]).all(|(red, wanted)| red.to_bits() == wanted.to_bits()),
+        "{reds:?}"
+    );
+}

@@ -404,3 +404,23 @@ fn buffers_are_files_beside_that_must_be_regular() {
     assert!(error.to_string().contains("buffer 0: "), "{error}");
     fs::remove_dir_all(&folder).unwrap();
 }
+
+#[test]
+fn lists_of_next_to_nothing_are_limited() {
+    let many = vec!["{}"; (1 << 20) + 1].join(",");
+    for list in ["nodes", "materials", "scenes"] {
+        let text = format!(r#"{{"asset":{{"version":"2.0"}},"{list}":[{many}]}}"#);
+        let told = faults(parse_with(text.as_bytes(), &[]));
+        assert!(told.len() == 1 && told[0].contains("more than 1048576 items"), "{told:?}");
+    }
+}
+
+#[test]
+fn a_glb_chunk_may_be_padded_with_zeros() {
+    let mut json = square().to_string();
+    let padding = 4 + (4 - json.len() % 4) % 4;
+    json.push_str(&"\0".repeat(padding));
+    let bytes = glb(&json, &buffer());
+    let loaded = gltf::parse(&bytes, "test.glb", &ReadOptions::default(), |_| Ok(buffer())).expect("a square");
+    assert_eq!(loaded.scene.polygon_count(), 2);
+}

@@ -222,3 +222,12 @@ fn points_without_faces_are_a_scene_without_faces() {
     let text = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\nend_header\n1 2 3\n";
     assert_eq!(parse(text.as_bytes()).unwrap().warnings, ["test.ply: there are no faces"]);
 }
+
+#[test]
+fn headers_of_very_many_elements_take_time_in_proportion() {
+    // Compared with each other they would take minutes.
+    let elements: Vec<String> = (0..200_000).map(|k| format!("element a{k} 0\n")).collect();
+    let elements = elements.concat();
+    let loaded = parse(format!("ply\nformat ascii 1.0\n{elements}end_header\n").as_bytes()).expect("an empty scene");
+    assert_eq!(loaded.scene.polygon_count(), 0);
+}

@@ -5,6 +5,7 @@ use super::error::{Faults, Place};
 use super::lines::{is_blank, lines};
 use super::number::{self, Shortest};
 use crate::scene::Material;
+use std::collections::{HashMap, HashSet};
 use std::io::{self, Write};
 
 /// A material and the line that defines it.
@@ -59,13 +60,31 @@ fn colour(text: &str) -> Result<[f64; 3], String> {
     Ok([red, green?, blue])
 }
 
-/// Writes materials as an MTL file. Numbers are the shortest that read as the same.
+/// The names that materials have in an MTL file, in their order: as one can write them, and different from each other. Of materials
+/// with one name the first keeps it, and the others get a number.
+pub fn names(materials: &[Material]) -> Vec<String> {
+    let mut taken: HashSet<String> = HashSet::new();
+    let mut counts: HashMap<String, usize> = HashMap::new();
+    let unique = materials.iter().map(|material| {
+        let name = super::obj::printable(&material.name);
+        let mut unique = name.clone();
+        while !taken.insert(unique.clone()) {
+            let count = counts.entry(name.clone()).or_insert(1);
+            unique = format!("{name}.{count}");
+            *count += 1;
+        }
+        unique
+    });
+    unique.collect()
+}
+
+/// Writes materials as an MTL file, under their [`names`]. Numbers are the shortest that read as the same.
 ///
 /// # Errors
 /// If writing fails.
 pub fn write(out: &mut impl Write, materials: &[Material]) -> io::Result<()> {
-    for material in materials {
-        writeln!(out, "newmtl {}", super::obj::printable(&material.name))?;
+    for (material, name) in materials.iter().zip(names(materials)) {
+        writeln!(out, "newmtl {name}")?;
         for (keyword, [r, g, b]) in [("Kd", material.diffuse), ("Ks", material.specular), ("Ke", material.emission)] {
             writeln!(out, "{keyword} {} {} {}", Shortest(r), Shortest(g), Shortest(b))?;
         }

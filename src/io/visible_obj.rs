@@ -1,5 +1,6 @@
 //! Visible fragments in space, and fragments of the 3D BSP, as groups for [`obj::write`](super::obj::write).
 
+use super::mtl;
 use super::obj::Group;
 use crate::bsp::SceneBsp;
 use crate::contour::ContourImage;
@@ -35,6 +36,7 @@ pub fn fragment_groups(bsp: &SceneBsp) -> Vec<Group> {
 
 /// Groups faces that come by ascending polygon.
 fn grouped(scene: &Scene, faces: impl Iterator<Item = (PolygonId, Vec<DVec3>)>) -> Vec<Group> {
+    let names = mtl::names(scene.materials());
     let mut groups: Vec<Group> = Vec::new();
     let mut last = None;
     for (polygon, mut corners) in faces {
@@ -46,7 +48,7 @@ fn grouped(scene: &Scene, faces: impl Iterator<Item = (PolygonId, Vec<DVec3>)>) 
             continue;
         }
         if last.replace(polygon) != Some(polygon) {
-            let material = Some(scene.polygon(polygon).material().name.clone());
+            let material = Some(names[scene.polygon(polygon).material_id().index()].clone());
             groups.push(Group { name: format!("polygon_{polygon}"), material, polygons: Vec::new() });
         }
         if let Some(group) = groups.last_mut() {

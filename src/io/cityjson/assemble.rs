@@ -64,12 +64,13 @@ fn prepare(model: &Model, options: &ReadOptions) -> Result<(Coordinates, Option<
         .ok_or_else(|| (Place::File, format!("{} is no level of detail; one is written like 2 or 2.2", shown(name))))?;
     let mut levels: Vec<Lod> = Vec::new();
     for lod in model.city_objects.0.iter().flat_map(|(_, object)| levels_of(model, object)) {
-        if !levels.contains(&lod) && levels.len() < 16 {
+        if lod == wanted {
+            return Ok((coordinates, Some(wanted)));
+        }
+        // Enough to name.
+        if levels.len() < 16 && !levels.contains(&lod) {
             levels.push(lod);
         }
-    }
-    if levels.contains(&wanted) || levels.len() == 16 {
-        return Ok((coordinates, Some(wanted)));
     }
     levels.sort_by(|a, b| a.compare(*b));
     let known: Vec<String> = levels.iter().map(ToString::to_string).collect();

@@ -2,7 +2,10 @@
 
 use super::super::number::shown;
 use super::super::told::told;
-use serde::Deserialize;
+use serde::de::{Error, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::fmt::Formatter;
+use std::marker::PhantomData;
 
 /// The whole file.
 #[derive(Debug, Deserialize)]
@@ -12,13 +15,13 @@ pub(super) struct Root {
     #[serde(default)]
     pub(super) extensions_required: Vec<String>,
     pub(super) scene: Option<usize>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "bounded")]
     pub(super) scenes: Vec<Scene>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "bounded")]
     pub(super) nodes: Vec<Node>,
     #[serde(default)]
     pub(super) meshes: Vec<Mesh>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "bounded")]
     pub(super) materials: Vec<Material>,
     #[serde(default)]
     pub(super) accessors: Vec<Accessor>,
@@ -26,6 +29,35 @@ pub(super) struct Root {
     pub(super) buffer_views: Vec<View>,
     #[serde(default)]
     pub(super) buffers: Vec<Buffer>,
+}
+
+/// Of what takes a few bytes in the file, but many in memory, a file may have so many.
+const MOST: usize = 1 << 20;
+
+/// A list of at most [`MOST`] items.
+fn bounded<'de, D: Deserializer<'de>, T: Deserialize<'de>>(list: D) -> Result<Vec<T>, D::Error> {
+    struct Bounded<T>(PhantomData<T>);
+
+    impl<'de, T: Deserialize<'de>> Visitor<'de> for Bounded<T> {
+        type Value = Vec<T>;
+
+        fn expecting(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
+            f.write_str("a list")
+        }
+
+        fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Vec<T>, A::Error> {
+            let mut list = Vec::new();
+            while let Some(item) = items.next_element()? {
+                if list.len() == MOST {
+                    return Err(Error::custom(format_args!("a list has more than {MOST} items; split the file")));
+                }
+                list.push(item);
+            }
+            Ok(list)
+        }
+    }
+
+    list.deserialize_seq(Bounded(PhantomData))
 }
 
 #[derive(Debug, Deserialize)]
@@ -62,7 +94,6 @@ pub(super) struct Mesh {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Primitive {
-    #[serde(default)]
     pub(super) attributes: Attributes,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,

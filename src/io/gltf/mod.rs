@@ -92,7 +92,9 @@ fn container<'a>(bytes: &'a [u8], draft: &mut Draft<'_>) -> Result<(Root, Option
         if extra > 0 {
             draft.warn(&Place::File, format_args!("the {extra} bytes after its end were ignored"));
         }
-        (json, binary)
+        // Padded with blanks, or by some programs with zeros.
+        let end = json.iter().rposition(|&byte| byte != 0).map_or(0, |last| last + 1);
+        (&json[..end], binary)
     } else {
         (without_mark(bytes), None)
     };

@@ -3,6 +3,7 @@
 use super::super::error::Place;
 use super::super::lines::{is_blank, take_line};
 use super::super::number::shown;
+use std::collections::HashSet;
 use std::str::FromStr;
 
 /// How the body is written.
@@ -104,6 +105,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header<'_>, (Place, String)> {
     let mut rest = bytes;
     let mut encoding = None;
     let mut elements: Vec<Element> = Vec::new();
+    let mut names = HashSet::new();
     let mut lines = 0;
     while !rest.is_empty() {
         lines += 1;
@@ -121,7 +123,8 @@ pub(super) fn parse(bytes: &[u8]) -> Result<Header<'_>, (Place, String)> {
             };
             return Ok(Header { encoding, elements, body: rest, lines });
         }
-        read_line(&words, lines, &mut encoding, &mut elements).map_err(|what| (Place::Line(lines), what))?;
+        read_line(&words, lines, &mut encoding, &mut elements, &mut names)
+            .map_err(|what| (Place::Line(lines), what))?;
     }
     Err((Place::File, "its header has no `end_header`; it may be cut off".to_owned()))
 }
@@ -131,6 +134,7 @@ fn read_line(
     line: usize,
     encoding: &mut Option<Encoding>,
     elements: &mut Vec<Element>,
+    names: &mut HashSet<String>,
 ) -> Result<(), String> {
     match words {
         [] | ["comment" | "obj_info", ..] => {}
@@ -146,7 +150,7 @@ fn read_line(
             let Ok(count) = count.parse() else {
                 return Err(format!("{} is no number of elements", shown(count)));
             };
-            if elements.iter().any(|element| element.name == *name) {
+            if !names.insert((*name).to_owned()) {
                 return Err(format!("there are two elements {}", shown(name)));
             }
             elements.push(Element { name: (*name).to_owned(), count, properties: Vec::new(), line });
