@@ -150,9 +150,9 @@ impl Skeleton {
         known.unwrap_or_else(|| self.push_plane(SupportingPlane::Axis { axis, value }))
     }
 
-    /// A plane through three vertices; `None` if they are too nearly on a line to tell.
+    /// A plane through three vertices; `None` if they are on a line.
     pub(super) fn plane_through(&self, vertices: [VertexId; 3]) -> Option<ApproxPlane> {
-        let plane = ApproxPlane::new(&Plane::Points(vertices.map(|v| self.vertex(v))));
+        let plane = ApproxPlane::refined(&Plane::Points(vertices.map(|v| self.vertex(v))));
         (!plane.normal.is_poor()).then_some(plane)
     }
 
