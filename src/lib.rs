@@ -40,6 +40,7 @@
 pub mod bsp;
 pub mod contour;
 pub mod exact;
+pub mod hemicube;
 pub mod integral;
 pub mod io;
 mod parallel;
