@@ -33,15 +33,16 @@ impl DeltaFactors {
         Self { resolution, top: top.collect(), side: side.collect() }
     }
 
-    /// The rows of the top face, in order.
-    pub(super) fn top_rows(&self) -> impl Iterator<Item = &[f64]> {
-        let rows = self.top.chunks_exact(self.resolution + 1);
-        rows.clone().chain(rows.rev())
-    }
-
-    /// The rows of a side face, from the horizon upwards.
-    pub(super) fn side_rows(&self) -> impl Iterator<Item = &[f64]> {
-        self.side.chunks_exact(self.resolution + 1)
+    /// All rows of the hemicube, face by face in their order there, each with its antiderivative; rows that share one come together, while
+    /// it is in the cache.
+    pub(super) fn rows(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        let width = self.resolution;
+        let tables = self.top.chunks_exact(width + 1).zip(self.side.chunks_exact(width + 1));
+        tables.enumerate().flat_map(move |(j, (top, side))| {
+            let across = [(j, top), (width - 1 - j, top)];
+            let beside = [0, 1, 2, 3].map(|k| (width + k * (width / 2) + j, side));
+            across.into_iter().chain(beside)
+        })
     }
 }
 
@@ -69,24 +70,26 @@ mod tests {
             let table = DeltaFactors::new(resolution);
             let at = |k: usize| 2.0 * k as f64 / resolution as f64;
             let mut total = 0.0;
-            for (j, row) in table.top_rows().enumerate() {
+            let mut rows = 0;
+            for (j, row) in table.rows() {
                 for k in 0..resolution {
-                    let corners = [[k, j], [k, j + 1], [k + 1, j + 1], [k + 1, j]];
-                    let corners = corners.map(|[u, v]| DVec3::new(at(u) - 1.0, 1.0 - at(v), 1.0));
+                    let [left, right] = [at(k) - 1.0, at(k + 1) - 1.0];
+                    let corners = if j < resolution {
+                        let [low, high] = [at(j) - 1.0, at(j + 1) - 1.0];
+                        [[left, low, 1.0], [right, low, 1.0], [right, high, 1.0], [left, high, 1.0]]
+                    } else {
+                        let j = (j - resolution) % (resolution / 2);
+                        let [low, high] = [at(j), at(j + 1)];
+                        [[1.0, left, low], [1.0, right, low], [1.0, right, high], [1.0, left, high]]
+                    };
                     let factor = row[k + 1] - row[k];
-                    assert!((factor - form_factor(&corners, DVec3::Z)).abs() < 2e-16, "top {j} {k}");
+                    let exact = form_factor(&corners.map(DVec3::from), DVec3::Z);
+                    assert!((factor - exact).abs() < 2e-16, "row {j}, column {k}: {factor} {exact}");
                     total += factor;
                 }
+                rows += 1;
             }
-            for (j, row) in table.side_rows().enumerate() {
-                for k in 0..resolution {
-                    let corners = [[k, j], [k + 1, j], [k + 1, j + 1], [k, j + 1]];
-                    let corners = corners.map(|[u, v]| DVec3::new(1.0, at(u) - 1.0, at(v)));
-                    let factor = row[k + 1] - row[k];
-                    assert!((factor - form_factor(&corners, DVec3::Z)).abs() < 2e-16, "side {j} {k}");
-                    total += 4.0 * factor;
-                }
-            }
+            assert_eq!(rows, 3 * resolution);
             assert!((total - 1.0).abs() < 1e-14, "{resolution}: {total}");
         }
     }

@@ -287,10 +287,12 @@ impl Draw {
 /// The depth test along a span. Of equally near pieces the first drawn stays.
 fn fill(nearness: &mut [f32], items: &mut [u32], ramp: &[f32], start: f32, step: f32, piece: u32) {
     for ((old, item), &k) in nearness.iter_mut().zip(items).zip(ramp) {
+        // Written without a branch, so that it compiles to vector instructions.
         let new = start + step * k;
-        let nearer = new > *old;
-        *old = if nearer { new } else { *old };
-        *item = if nearer { piece } else { *item };
+        let (near, shown) = (*old, *item);
+        let mask = 0_u32.wrapping_sub(u32::from(new > near));
+        *old = f32::from_bits((new.to_bits() & mask) | (near.to_bits() & !mask));
+        *item = (piece & mask) | (shown & !mask);
     }
 }
 

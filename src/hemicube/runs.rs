@@ -1,26 +1,34 @@
 //! Sums over the item buffer by runs of equal items.
 
-/// Calls `add` with the item, the form factor and the length of every run of equal items in a row.
+/// Calls `add` with the item, the form factor and the length of every run of equal items in a row of at least one.
 pub(super) fn for_runs(row: &[u32], antiderivative: &[f64], mut add: impl FnMut(u32, f64, usize)) {
     let mut from = 0;
-    while let Some(&item) = row.get(from) {
-        let to = from + run_length(&row[from..], item);
-        add(item, antiderivative[to] - antiderivative[from], to - from);
+    let mut end = |to: usize| {
+        add(row[from], antiderivative[to] - antiderivative[from], to - from);
         from = to;
-    }
-}
-
-/// How many items at the start of `items` equal `item`. Eight at a time: that compiles to vector instructions.
-fn run_length(items: &[u32], item: u32) -> usize {
-    let (chunks, rest) = items.as_chunks::<8>();
-    for (k, chunk) in chunks.iter().enumerate() {
-        if chunk.iter().fold(0, |differing, &other| differing | (other ^ item)) != 0 {
-            let same = chunk.iter().position(|&other| other != item);
-            return 8 * k + same.unwrap_or(8);
+    };
+    // Eight pixels at a time are compared with their neighbours: that compiles to vector instructions, and there
+    // is one branch that is hard to foretell for each run.
+    let [before, after] = [&row[..row.len() - 1], &row[1..]];
+    let ((before, before_rest), (after, after_rest)) = (before.as_chunks::<8>(), after.as_chunks::<8>());
+    for (k, (before, after)) in before.iter().zip(after).enumerate() {
+        let mut differs = [0_u8; 8];
+        for ((differs, a), b) in differs.iter_mut().zip(before).zip(after) {
+            *differs = u8::from(a != b);
+        }
+        let mut bits = u64::from_le_bytes(differs);
+        while bits != 0 {
+            end(8 * k + bits.trailing_zeros() as usize / 8 + 1);
+            bits &= bits - 1;
         }
     }
-    let same = rest.iter().position(|&other| other != item);
-    8 * chunks.len() + same.unwrap_or(rest.len())
+    let checked = 8 * before.len();
+    for (k, (a, b)) in before_rest.iter().zip(after_rest).enumerate() {
+        if a != b {
+            end(checked + k + 1);
+        }
+    }
+    end(row.len());
 }
 
 #[cfg(test)]

@@ -202,8 +202,7 @@ impl Hemicube {
 
 /// The rows of the item buffer, each with its antiderivative of the form factor.
 fn rows<'a>(items: &'a [u32], delta: &'a DeltaFactors, width: usize) -> impl Iterator<Item = (&'a [u32], &'a [f64])> {
-    let sides = (0..4).flat_map(|_| delta.side_rows());
-    items.chunks_exact(width).zip(delta.top_rows().chain(sides))
+    delta.rows().map(move |(row, antiderivative)| (&items[row * width..][..width], antiderivative))
 }
 
 /// What a hemicube shows.
