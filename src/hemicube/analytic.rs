@@ -13,7 +13,8 @@
 //! at pixels only, and so the part that is seen is known as a set of pixels; every formula is exact for what it is
 //! applied to. The sum over everything is not 1 any more.
 
-use super::view::{Hemicube, HemicubeError, HemicubeStats};
+use super::error::BaselineError;
+use super::view::{Hemicube, HemicubeStats};
 use crate::contour::Viewpoint;
 use crate::integral::form_factor;
 use crate::scene::PolygonId;
@@ -34,7 +35,7 @@ impl Hemicube {
     ///
     /// # Errors
     /// As [`Hemicube::view`].
-    pub fn analytic(&mut self, viewpoint: &Viewpoint, normal: DVec3) -> Result<AnalyticView<'_>, HemicubeError> {
+    pub fn analytic(&mut self, viewpoint: &Viewpoint, normal: DVec3) -> Result<AnalyticView<'_>, BaselineError> {
         let stats = self.draw(viewpoint, normal)?;
         self.sum_by_piece();
         let mut whole = 0;

@@ -35,7 +35,7 @@ impl Geometry {
             z: vertices.iter().map(|p| p.z).collect(),
             corners,
             starts,
-            normals: scene.pieces().map(normal).collect(),
+            normals: scene.pieces().map(unit_normal).collect(),
             reach: vertices.iter().fold(0.0, |reach, p| p.abs().max_element().max(reach)),
         }
     }
@@ -75,7 +75,7 @@ impl Geometry {
 }
 
 /// A unit vector along the area vector of a piece; zero if it is lost to underflow.
-fn normal(piece: PieceRef<'_>) -> DVec3 {
+pub(super) fn unit_normal(piece: PieceRef<'_>) -> DVec3 {
     let reach = piece.points().fold(0.0, |reach: f64, p| p.abs().max_element().max(reach));
     let scale = inverse_power_of_two(reach);
     let origin = piece.points().next().unwrap_or_default() * scale;
@@ -88,7 +88,7 @@ fn normal(piece: PieceRef<'_>) -> DVec3 {
 }
 
 /// A power of two that brings a positive number to 1..2, or as near to it as powers go; 1 for 0.
-fn inverse_power_of_two(value: f64) -> f64 {
+pub(super) fn inverse_power_of_two(value: f64) -> f64 {
     let biased = (value.to_bits() >> 52) as i64;
     if value == 0.0 { 1.0 } else { f64::from_bits(((2046 - biased).clamp(1, 2046) as u64) << 52) }
 }

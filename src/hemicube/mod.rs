@@ -3,6 +3,7 @@
 //! - [`Hemicube`]: form factors by z-buffers on the five faces of half a cube (Cohen and Greenberg 1985).
 //! - [`Hemicube::analytic`]: visibility by the same z-buffers, form factors by the analytic formula (after Baum,
 //!   Rushmeier and Winget 1989).
+//! - `Rays`, with the feature `rays`: the share of cosine-distributed rays that meet a polygon.
 //!
 //! They are approximations, made as fast as they can well be, so that a comparison with them is worth
 //! something. What was and what was not optimised: `docs/comparison.md`.
@@ -12,12 +13,18 @@
 
 mod analytic;
 mod delta;
+mod error;
 mod face;
 mod geometry;
 mod raster;
+#[cfg(feature = "rays")]
+mod rays;
 mod runs;
 mod view;
 
 pub use analytic::AnalyticView;
+pub use error::BaselineError;
 pub use face::Face;
-pub use view::{Hemicube, HemicubeError, HemicubeStats, HemicubeView};
+#[cfg(feature = "rays")]
+pub use rays::{Rays, RaysView};
+pub use view::{Hemicube, HemicubeStats, HemicubeView};

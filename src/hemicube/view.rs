@@ -1,6 +1,7 @@
 //! The hemicube: what it keeps between views, and a view.
 
 use super::delta::DeltaFactors;
+use super::error::BaselineError;
 use super::face::{Face, frame};
 use super::geometry::{Geometry, Seen};
 use super::raster::{Draw, Rasteriser, distribute};
@@ -8,30 +9,6 @@ use super::runs::for_runs;
 use crate::contour::Viewpoint;
 use crate::scene::{PieceId, PolygonId, Scene};
 use glam::DVec3;
-
-/// Why there is no hemicube or no view.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum HemicubeError {
-    /// A resolution that is odd, 0 or too large.
-    #[error("a hemicube's resolution is an even number from 2 to {}, not {resolution}", Hemicube::MAX_RESOLUTION)]
-    BadResolution {
-        /// The resolution asked for.
-        resolution: usize,
-    },
-    /// The eye has a coordinate that is infinite or not a number.
-    #[error("the eye has a coordinate that is not finite")]
-    EyeNotFinite,
-    /// The normal is zero, or not finite.
-    #[error("the hemicube's normal is zero or not finite")]
-    BadNormal,
-    /// The viewpoint is on a piece that the scene does not have.
-    #[error("the viewpoint is on piece {piece}, which is not in this scene")]
-    NotInScene {
-        /// That piece.
-        piece: PieceId,
-    },
-}
 
 /// A hemicube for the views of one scene.
 ///
@@ -94,9 +71,9 @@ impl Hemicube {
     ///
     /// # Errors
     /// If the resolution is odd, 0 or larger than [`Self::MAX_RESOLUTION`].
-    pub fn new(scene: &Scene, resolution: usize) -> Result<Self, HemicubeError> {
+    pub fn new(scene: &Scene, resolution: usize) -> Result<Self, BaselineError> {
         if resolution == 0 || !resolution.is_multiple_of(2) || resolution > Self::MAX_RESOLUTION {
-            return Err(HemicubeError::BadResolution { resolution });
+            return Err(BaselineError::BadResolution { resolution });
         }
         let geometry = Geometry::new(scene);
         let background = scene.polygon_count() as u32;
@@ -132,7 +109,7 @@ impl Hemicube {
     ///
     /// # Errors
     /// If the eye is not finite, the normal has no direction, or the viewpoint is on a piece of another scene.
-    pub fn view(&mut self, viewpoint: &Viewpoint, normal: DVec3) -> Result<HemicubeView<'_>, HemicubeError> {
+    pub fn view(&mut self, viewpoint: &Viewpoint, normal: DVec3) -> Result<HemicubeView<'_>, BaselineError> {
         let stats = self.draw(viewpoint, normal)?;
         let Self { factors, polygons, .. } = self;
         factors.fill(0.0);
@@ -144,24 +121,14 @@ impl Hemicube {
     }
 
     /// Fills the item buffer.
-    pub(super) fn draw(&mut self, viewpoint: &Viewpoint, normal: DVec3) -> Result<HemicubeStats, HemicubeError> {
-        let eye = viewpoint.eye();
-        if !eye.is_finite() {
-            return Err(HemicubeError::EyeNotFinite);
-        }
-        let frame = frame(normal).ok_or(HemicubeError::BadNormal)?;
-        let floor = match viewpoint.surface_piece() {
-            Some((piece, _)) if piece.index() >= self.scene.piece_count() => {
-                return Err(HemicubeError::NotInScene { piece });
-            }
-            Some((piece, _)) => Some(self.scene.piece(piece).plane_id()),
-            None => None,
-        };
+    pub(super) fn draw(&mut self, viewpoint: &Viewpoint, normal: DVec3) -> Result<HemicubeStats, BaselineError> {
+        let floor = BaselineError::check_viewpoint(viewpoint, &self.scene)?;
+        let frame = frame(normal).ok_or(BaselineError::BadNormal)?;
         let scene = &self.scene;
         let on_floor =
             |piece: usize| floor.is_some_and(|plane| scene.piece(PieceId(piece as u32)).plane_id() == plane);
         let width = self.resolution;
-        self.geometry.transform(eye, frame, width, &mut self.seen);
+        self.geometry.transform(viewpoint.eye(), frame, width, &mut self.seen);
         distribute(&self.geometry, &self.seen, width, on_floor, &mut self.lists);
         self.covered.fill(0);
         let background = self.covered.len() as u32;
