@@ -138,9 +138,7 @@ fn below_behind_edge_on_or_around_the_eye_there_is_nothing() {
 
 #[test]
 fn both_sides_hide_and_the_nearest_is_seen() {
-    let square = |z: f64, half: f64| {
-        [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]]
-    };
+    let square = |z: f64, half: f64| [[-half, -half, z], [half, -half, z], [half, half, z], [-half, half, z]];
     let near = square(1.0, 0.5);
     let mut far = square(2.0, 1.0);
     far.reverse();
@@ -243,7 +241,8 @@ fn scaling_by_a_power_of_two_changes_nothing() {
 
 #[test]
 fn hostile_coordinates_give_numbers_or_errors() {
-    let values = [0.0, 1.0, -1.0, 1e300, -1e300, f64::MAX, f64::MIN, 1e-300, -1e-300, 5e-324, f64::MIN_POSITIVE, 1e-160];
+    let values =
+        [0.0, 1.0, -1.0, 1e300, -1e300, f64::MAX, f64::MIN, 1e-300, -1e-300, 5e-324, f64::MIN_POSITIVE, 1e-160];
     let mut state = 1_u64;
     let mut pick = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

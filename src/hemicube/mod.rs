@@ -13,6 +13,7 @@
 
 mod analytic;
 mod delta;
+mod deviations;
 mod error;
 mod face;
 mod geometry;
@@ -23,6 +24,7 @@ mod runs;
 mod view;
 
 pub use analytic::AnalyticView;
+pub use deviations::Deviations;
 pub use error::BaselineError;
 pub use face::Face;
 #[cfg(feature = "rays")]

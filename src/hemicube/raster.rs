@@ -57,11 +57,7 @@ pub(super) fn distribute(
 }
 
 /// The box of pixels of a piece on a face, if it is not all of it beyond one of the face's sides or behind it.
-fn across_faces(
-    face: Face,
-    corners: impl Iterator<Item = [f64; 3]>,
-    resolution: usize,
-) -> Option<[[u16; 2]; 2]> {
+fn across_faces(face: Face, corners: impl Iterator<Item = [f64; 3]>, resolution: usize) -> Option<[[u16; 2]; 2]> {
     let half = 0.5 * resolution as f64;
     let lowest = if face == Face::Top { -1.0 } else { 0.0 };
     let mut beyond_all = 31;
@@ -72,11 +68,8 @@ fn across_faces(
         beyond_all &= beyond.iter().rev().fold(0, |bits, &bit| bits << 1 | u32::from(bit));
         behind |= w <= 0.0;
         let scale = half / w;
-        let at = OnScreen {
-            column: ((u + w) * scale - 0.5) as f32,
-            row: ((v - lowest * w) * scale - 0.5) as f32,
-            flags: 0,
-        };
+        let at =
+            OnScreen { column: ((u + w) * scale - 0.5) as f32, row: ((v - lowest * w) * scale - 0.5) as f32, flags: 0 };
         match &mut bounds {
             Some(bounds) => bounds.include(at),
             None => bounds = Some(Bounds::new(at)),
@@ -238,7 +231,11 @@ impl Rasteriser {
             let slope = -cv * inverse;
             let offset = (slope * v0 - cw * inverse - u0) * half;
             let border = Border { slope, offset };
-            if (cu > 0.0) == (height > 0.0) { self.left.push(border) } else { self.right.push(border) }
+            if (cu > 0.0) == (height > 0.0) {
+                self.left.push(border)
+            } else {
+                self.right.push(border)
+            }
             bounding += 1;
         }
         if bounding < 3 {

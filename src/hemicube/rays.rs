@@ -75,8 +75,8 @@ impl Rays {
                 corners.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
             boxes.push(Aabb::new(low - MARGIN, high + MARGIN));
         }
-        let bvh = (!boxes.is_empty())
-            .then(|| build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default()));
+        let bvh =
+            (!boxes.is_empty()).then(|| build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default()));
         Self { scene: scene.clone(), scale, bvh, planes, starts, hits: vec![0; scene.polygon_count() + 1] }
     }
 

@@ -125,8 +125,7 @@ impl Hemicube {
         let floor = BaselineError::check_viewpoint(viewpoint, &self.scene)?;
         let frame = frame(normal).ok_or(BaselineError::BadNormal)?;
         let scene = &self.scene;
-        let on_floor =
-            |piece: usize| floor.is_some_and(|plane| scene.piece(PieceId(piece as u32)).plane_id() == plane);
+        let on_floor = |piece: usize| floor.is_some_and(|plane| scene.piece(PieceId(piece as u32)).plane_id() == plane);
         let width = self.resolution;
         self.geometry.transform(viewpoint.eye(), frame, width, &mut self.seen);
         distribute(&self.geometry, &self.seen, width, on_floor, &mut self.lists);
