@@ -1,5 +1,5 @@
-//! The tables of docs/comparison.md: `cargo bench --bench baselines --features rays`, or for one size of the room
-//! `cargo bench --bench baselines --features rays -- 10000`. Without the feature there are no rows of rays.
+//! The tables of docs/comparison.md: `cargo bench --bench baselines`, or for one size of the room
+//! `cargo bench --bench baselines -- 10000`.
 
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
@@ -59,8 +59,7 @@ fn compare(scene: &Scene, views: &[Viewpoint]) -> Result<(), Box<dyn Error>> {
             Ok(view.evaluations())
         })?;
     }
-    #[cfg(feature = "rays")]
-    for count in [10_000, 100_000, 1_000_000] {
+    for count in [10_000, 100_000] {
         let mut rays = nusselt::hemicube::Rays::new(scene);
         measure(scene, &format!("rays {count}"), views, &mut exact, |view, factors| {
             let view = rays.view(view, DVec3::Z, count, 1)?;

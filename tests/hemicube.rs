@@ -6,7 +6,7 @@ use common::{Faces, cluttered_room};
 use glam::{DQuat, DVec3};
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::contour::{Domain, Viewpoint};
-use nusselt::hemicube::{BaselineError, Face, Hemicube};
+use nusselt::hemicube::{BaselineError, Face, Hemicube, Rays};
 use nusselt::integral::form_factor;
 use nusselt::samples::{Kind, cornell_box, generate};
 use nusselt::scene::{PieceId, PolygonId, Scene, Side};
@@ -293,4 +293,61 @@ fn what_makes_no_sense_is_refused() {
     assert_eq!(hemicube.view(&elsewhere, DVec3::Z).err(), Some(BaselineError::NotInScene { piece }));
     let mut nothing = Hemicube::new(&Scene::builder().build().unwrap(), 8).unwrap();
     assert!((nothing.view(&free([0.0; 3]), DVec3::Z).unwrap().background() - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn rays_are_within_five_standard_errors_of_the_contour_image() {
+    let cornell = cornell_box();
+    let room = generate(Kind::Room, 1000, 1).unwrap();
+    for mesh in [&cornell, &room] {
+        let scene = mesh.to_builder().build().unwrap();
+        let mut rays = Rays::new(&scene);
+        for (point, normal) in mesh.free_points(2, 4).into_iter().zip([DVec3::Z, DVec3::new(-1.0, 0.3, 0.2)]) {
+            let exact = exact(&scene, &free(point), normal);
+            for count in [1_000, 30_000, 200_000] {
+                let view = rays.view(&free(point), normal, count, 5).unwrap();
+                let n = f64::from(count);
+                // A hit more or less for those of which there are too few for a standard error to mean anything.
+                for (k, (found, exact)) in view.factors().zip(&exact).enumerate() {
+                    let deviation = (exact * (1.0 - exact) / n).sqrt();
+                    assert!((found - exact).abs() <= 5.0 * (deviation + 1.0 / n), "{k} of {count}: {found} {exact}");
+                    let stated = view.standard_error(PolygonId(k as u32));
+                    assert!((stated - (found * (1.0 - found) / n).sqrt()).abs() < 1e-15);
+                }
+                assert!((view.factors().sum::<f64>() + view.background() - 1.0).abs() < 1e-12);
+                let open = 1.0 - exact.iter().sum::<f64>();
+                let deviation = (open.max(0.0) * (1.0 - open) / n).sqrt();
+                assert!((view.background() - open).abs() <= 5.0 * (deviation + 1.0 / n), "{}", view.background());
+            }
+        }
+    }
+}
+
+#[test]
+fn rays_give_the_same_for_the_same_seed_and_refuse_what_makes_no_sense() {
+    let scene = cluttered_room(20, 3).build();
+    let mut rays = Rays::new(&scene);
+    let viewpoint = Viewpoint::on_surface(&scene, PolygonId(2), Side::Front, DVec3::ONE).unwrap();
+    let normal = DVec3::Y;
+    let first: Vec<f64> = rays.view(&viewpoint, normal, 5000, 1).unwrap().factors().collect();
+    let other: Vec<f64> = rays.view(&viewpoint, normal, 5000, 2).unwrap().factors().collect();
+    let again: Vec<f64> = rays.view(&viewpoint, normal, 5000, 1).unwrap().factors().collect();
+    assert!(first == again && first != other && first[2] == 0.0);
+    assert_eq!(rays.view(&viewpoint, normal, 0, 1).err(), Some(BaselineError::NoRays));
+    assert_eq!(rays.view(&viewpoint, DVec3::ZERO, 9, 1).err(), Some(BaselineError::BadNormal));
+    assert_eq!(rays.view(&free([f64::INFINITY, 0.0, 0.0]), normal, 9, 1).err(), Some(BaselineError::EyeNotFinite));
+    assert_eq!(rays.view(&free([1e300, 0.0, 0.0]), normal, 9, 1).err(), Some(BaselineError::EyeTooFar));
+    let mut nothing = Rays::new(&Scene::builder().build().unwrap());
+    assert!(nothing.view(&free([0.0; 3]), normal, 9, 1).unwrap().background() == 1.0);
+}
+
+#[test]
+fn rays_take_scenes_of_any_size() {
+    for size in [1e300, 1e150, 1.0, 1e-150, 1e-300, 1e-310] {
+        let corners = [[-1.0, -1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]];
+        let scene = of(&[&corners.map(|corner| corner.map(|x| x * size))]);
+        let view = |rays: &mut Rays| rays.view(&free([0.0; 3]), DVec3::Z, 10_000, 1).unwrap().of(PolygonId(0));
+        // 4 / pi * atan(1 / sqrt 2) / sqrt 2
+        assert!((view(&mut Rays::new(&scene)) - 0.554_1).abs() < 0.01, "{size}");
+    }
 }

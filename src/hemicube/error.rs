@@ -21,7 +21,7 @@ pub enum BaselineError {
     #[error("the eye has a coordinate that is not finite")]
     EyeNotFinite,
     /// The eye is too far away for rays.
-    #[error("the eye is more than 1000 times as far from the origin as the scene reaches: too far for rays")]
+    #[error("the eye is too far away for rays: farther from the middle of the scene than twice its largest extent")]
     EyeTooFar,
     /// The normal is zero, or not finite.
     #[error("the normal is zero or not finite")]

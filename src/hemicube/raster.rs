@@ -232,9 +232,9 @@ impl Rasteriser {
             let offset = (slope * v0 - cw * inverse - u0) * half;
             let border = Border { slope, offset };
             if (cu > 0.0) == (height > 0.0) {
-                self.left.push(border)
+                self.left.push(border);
             } else {
-                self.right.push(border)
+                self.right.push(border);
             }
             bounding += 1;
         }

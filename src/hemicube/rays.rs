@@ -36,7 +36,7 @@ use std::time::Duration;
 #[derive(Clone)]
 pub struct Rays {
     scene: Scene,
-    scale: f64,
+    local: Local,
     bvh: Option<CwBvh>,
     /// The plane of each piece and then, for each of its edges, the plane through it across the piece, with what is inside in
     /// front.
@@ -54,30 +54,52 @@ struct Plane {
     offset: f64,
 }
 
-/// How far from the origin the eye may be, in units of the farthest vertex: the hierarchy is in f32.
-const FARTHEST: f64 = 1e3;
-/// What boxes are enlarged by, in the same units (1 to 2): f32 rounds an eye as far as that by less.
-const MARGIN: f32 = 3e-7;
+/// Coordinates about the middle of the scene, in which it reaches 1 to 2 along its longest axis.
+#[derive(Clone, Copy, Debug)]
+struct Local {
+    scale: f64,
+    middle: DVec3,
+    /// How far it reaches.
+    reach: f64,
+}
+
+impl Local {
+    fn new(scene: &Scene) -> Self {
+        let (low, high) = scene.bounds().unwrap_or_default();
+        let half = (high * 0.5 - low * 0.5).max_element();
+        let scale = inverse_power_of_two(half);
+        Self { scale, middle: low * (0.5 * scale) + high * (0.5 * scale), reach: half * scale }
+    }
+
+    fn of(&self, point: DVec3) -> DVec3 {
+        point * self.scale - self.middle
+    }
+}
+
+/// How far from the middle the eye may be, in units of the scene's reach: the hierarchy is in f32.
+const FARTHEST: f64 = 4.0;
+/// What boxes are enlarged by in local coordinates. Up to 8 from the middle f32 rounds the eye by 2e-7; over the way to a box, up to 20,
+/// rounding the direction adds 6e-7 and the slab test 2e-6.
+const MARGIN: f32 = 4e-6;
 
 impl Rays {
     /// Builds the hierarchy: O(n log n).
     pub fn new(scene: &Scene) -> Self {
-        let reach = scene.vertices().iter().fold(0.0, |reach: f64, p| p.abs().max_element().max(reach));
-        let scale = inverse_power_of_two(reach);
+        let local = Local::new(scene);
         let mut planes = Vec::new();
         let mut starts = vec![0];
         let mut boxes = Vec::with_capacity(scene.piece_count());
         for piece in scene.pieces() {
-            push_planes(piece, scale, &mut planes);
+            push_planes(piece, &local, &mut planes);
             starts.push(planes.len() as u32);
-            let corners = piece.points().map(|p| (p * scale).as_vec3a());
+            let corners = piece.points().map(|p| local.of(p).as_vec3a());
             let (low, high) =
                 corners.fold((Vec3A::INFINITY, Vec3A::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
             boxes.push(Aabb::new(low - MARGIN, high + MARGIN));
         }
         let bvh =
             (!boxes.is_empty()).then(|| build_cwbvh(&boxes, BvhBuildParams::medium_build(), &mut Duration::default()));
-        Self { scene: scene.clone(), scale, bvh, planes, starts, hits: vec![0; scene.polygon_count() + 1] }
+        Self { scene: scene.clone(), local, bvh, planes, starts, hits: vec![0; scene.polygon_count() + 1] }
     }
 
     /// The scene.
@@ -89,8 +111,8 @@ impl Rays {
     /// that piece and what shares its plane are passed through.
     ///
     /// # Errors
-    /// If there are no rays, if the eye is not finite or more than 1000 times as far from the origin as the scene reaches, if
-    /// the normal has no direction, or if the viewpoint is on a piece of another scene.
+    /// If there are no rays, if the eye is not finite or farther from the middle of the scene, along an axis, than twice its
+    /// largest extent, if the normal has no direction, or if the viewpoint is on a piece of another scene.
     pub fn view(
         &mut self,
         viewpoint: &Viewpoint,
@@ -100,8 +122,8 @@ impl Rays {
     ) -> Result<RaysView<'_>, BaselineError> {
         let [t, b, n] = frame(normal).ok_or(BaselineError::BadNormal)?;
         let floor = BaselineError::check_viewpoint(viewpoint, &self.scene)?;
-        let eye = viewpoint.eye() * self.scale;
-        if eye.abs().max_element().is_nan() || eye.abs().max_element() > FARTHEST {
+        let eye = self.local.of(viewpoint.eye());
+        if self.bvh.is_some() && eye.abs().max_element() > FARTHEST * self.local.reach {
             return Err(BaselineError::EyeTooFar);
         }
         if rays == 0 {
@@ -159,12 +181,12 @@ impl Rays {
     }
 }
 
-fn push_planes(piece: PieceRef<'_>, scale: f64, planes: &mut Vec<Plane>) {
+fn push_planes(piece: PieceRef<'_>, local: &Local, planes: &mut Vec<Plane>) {
     let normal = unit_normal(piece);
-    let corners = || piece.points().map(|p| p * scale);
-    let first = corners().next().unwrap_or_default();
-    planes.push(Plane { normal, offset: normal.dot(first) });
-    for (a, b) in corners().zip(corners().cycle().skip(1)) {
+    let corners: Vec<DVec3> = piece.points().map(|p| local.of(p)).collect();
+    let Some(first) = corners.first() else { return };
+    planes.push(Plane { normal, offset: normal.dot(*first) });
+    for (&a, &b) in corners.iter().zip(corners.iter().cycle().skip(1)) {
         let inwards = normal.cross((b - a).normalize_or_zero());
         planes.push(Plane { normal: inwards, offset: inwards.dot(a) });
     }
