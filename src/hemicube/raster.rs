@@ -9,6 +9,7 @@
 use super::face::Face;
 use super::geometry::{ABOVE, FACES, Geometry, OnScreen, Seen};
 use glam::DVec3;
+use std::ops::Range;
 
 /// A piece to draw on a face, within a box of pixels.
 #[derive(Clone, Copy, Debug)]
@@ -147,11 +148,28 @@ impl Border {
     }
 }
 
-/// Draws pieces on one face after the other.
+/// Consecutive rows of a face.
+#[derive(Debug)]
+pub(super) struct Band<'a> {
+    pub(super) rows: Range<usize>,
+    /// Of their pixels.
+    pub(super) items: &'a mut [u32],
+}
+
+/// How many rows are drawn at a time: faces are drawn in bands that stay in the cache, at the price that pieces in several bands
+/// are set up several times.
+pub(super) fn band_rows(resolution: usize) -> usize {
+    (BAND_PIXELS / resolution).clamp(1, resolution)
+}
+
+/// With 8 bytes for each, half of a usual second-level cache.
+const BAND_PIXELS: usize = 1 << 15;
+
+/// Draws pieces on one band after the other.
 #[derive(Clone, Debug)]
 pub(super) struct Rasteriser {
     resolution: usize,
-    /// 1 over the depth: larger is nearer, and 0 is at infinity.
+    /// Of a band of rows, 1 over the depth: larger is nearer, and 0 is at infinity.
     nearness: Vec<f32>,
     /// 0, 1, 2 ... for the columns.
     ramp: Vec<f32>,
@@ -163,7 +181,7 @@ impl Rasteriser {
     pub(super) fn new(resolution: usize) -> Self {
         Self {
             resolution,
-            nearness: vec![0.0; resolution * resolution],
+            nearness: vec![0.0; band_rows(resolution) * resolution],
             ramp: (0..resolution).map(|k| k as f32).collect(),
             left: Vec::new(),
             right: Vec::new(),
@@ -171,11 +189,11 @@ impl Rasteriser {
     }
 
     /// Forgets all depths.
-    pub(super) fn clear(&mut self, face: Face) {
-        self.nearness[..face.rows(self.resolution) * self.resolution].fill(0.0);
+    pub(super) fn clear(&mut self) {
+        self.nearness.fill(0.0);
     }
 
-    /// Draws a piece. The number of pixels it covers, hidden or not.
+    /// Draws a piece as far as it is in a band of rows of the item buffer. The number of pixels it covers there, hidden or not.
     pub(super) fn draw(
         &mut self,
         face: Face,
@@ -183,7 +201,7 @@ impl Rasteriser {
         seen: &Seen,
         normal: DVec3,
         draw: &Draw,
-        items: &mut [u32],
+        band: &mut Band<'_>,
     ) -> u32 {
         let piece = draw.piece as usize;
         let half = 0.5 * self.resolution as f64;
@@ -198,7 +216,8 @@ impl Rasteriser {
         if height == 0.0 || height.is_nan() {
             return 0;
         }
-        let [mut low, mut high] = draw.rows.map(usize::from);
+        let mut low = usize::from(draw.rows[0]).max(band.rows.start);
+        let mut high = usize::from(draw.rows[1]).min(band.rows.end);
         self.left.clear();
         self.right.clear();
         let mut bounding = 0;
@@ -268,8 +287,9 @@ impl Rasteriser {
             }
             covered += (to - from) as u32;
             let start = (origin + row_step * y + step * from as f64) as f32;
-            let span = row * self.resolution + from..row * self.resolution + to;
-            fill(&mut self.nearness[span.clone()], &mut items[span], &self.ramp, start, step as f32, draw.piece);
+            let start_of_row = (row - band.rows.start) * self.resolution;
+            let span = start_of_row + from..start_of_row + to;
+            fill(&mut self.nearness[span.clone()], &mut band.items[span], &self.ramp, start, step as f32, draw.piece);
         }
         covered
     }
@@ -278,6 +298,11 @@ impl Rasteriser {
 impl Draw {
     pub(super) fn piece(&self) -> usize {
         self.piece as usize
+    }
+
+    /// Whether it may have pixels in some rows.
+    pub(super) fn meets(&self, rows: &Range<usize>) -> bool {
+        usize::from(self.rows[0]) < rows.end && usize::from(self.rows[1]) > rows.start
     }
 }
 

@@ -4,7 +4,7 @@ use super::delta::DeltaFactors;
 use super::error::BaselineError;
 use super::face::{Face, frame};
 use super::geometry::{Geometry, Seen};
-use super::raster::{Draw, Rasteriser, distribute};
+use super::raster::{Band, Draw, Rasteriser, band_rows, distribute};
 use super::runs::for_runs;
 use crate::contour::Viewpoint;
 use crate::scene::{PieceId, PolygonId, Scene};
@@ -135,13 +135,18 @@ impl Hemicube {
         for (face, list) in Face::ALL.into_iter().zip(&self.lists) {
             let (own, rest) = items.split_at_mut(face.rows(width) * width);
             items = rest;
-            own.fill(background);
-            self.rasteriser.clear(face);
-            for draw in list {
-                let normal = self.geometry.normal(draw.piece());
-                let normal = DVec3::from(frame.map(|axis| axis.dot(normal)));
-                let covered = self.rasteriser.draw(face, &self.geometry, &self.seen, normal, draw, own);
-                self.covered[draw.piece()] += covered;
+            let step = band_rows(width);
+            for (k, items) in own.chunks_mut(step * width).enumerate() {
+                items.fill(background);
+                self.rasteriser.clear();
+                let rows = k * step..k * step + items.len() / width;
+                let mut band = Band { rows: rows.clone(), items };
+                for draw in list.iter().filter(|draw| draw.meets(&rows)) {
+                    let normal = self.geometry.normal(draw.piece());
+                    let normal = DVec3::from(frame.map(|axis| axis.dot(normal)));
+                    let covered = self.rasteriser.draw(face, &self.geometry, &self.seen, normal, draw, &mut band);
+                    self.covered[draw.piece()] += covered;
+                }
             }
         }
         Ok(HemicubeStats {
