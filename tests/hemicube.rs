@@ -35,9 +35,9 @@ fn largest_pixel(resolution: usize) -> f64 {
 }
 
 fn exact(scene: &Scene, viewpoint: &Viewpoint, normal: DVec3) -> Vec<f64> {
-    let bsp = SceneBsp::build(scene, &BspOptions::default()).unwrap();
-    let image = bsp.view(viewpoint, &Domain::Hemisphere(normal)).unwrap();
-    let sums = image.form_factors().unwrap();
+    let bsp = SceneBsp::build(scene, &BspOptions::default()).expect("a small scene");
+    let image = bsp.view(viewpoint, &Domain::Hemisphere(normal)).expect("a finite eye and normal");
+    let sums = image.form_factors().expect("a hemisphere has a normal");
     (0..scene.polygon_count() as u32).map(|k| sums.of(PolygonId(k))).collect()
 }
 
@@ -77,7 +77,7 @@ fn a_rectangle_on_borders_of_pixels_is_exact() {
         let mut hemicube = Hemicube::new(&scene, resolution).unwrap();
         let view = hemicube.view(&free([0.0; 3]), DVec3::Z).unwrap();
         assert!((view.of(PolygonId(0)) - factor).abs() < 1e-14, "{resolution}");
-        assert_eq!(view.pieces(Face::Top).filter(Option::is_some).count() * 64, 10 * 6 * resolution * resolution / 4);
+        assert_eq!(view.pieces(Face::Top).flatten().count() * 64, 10 * 6 * resolution * resolution / 4);
         assert!(Face::ALL[1..].iter().all(|&face| view.pieces(face).all(|piece| piece.is_none())));
     }
 }
@@ -167,12 +167,12 @@ fn factors_converge_to_those_of_the_contour_image() {
                 assert!((view.total() - 1.0).abs() < 1e-12);
                 let errors = view.factors().iter().zip(&exact).map(|(a, b)| (a - b).abs());
                 let error = errors.fold(0.0, f64::max);
-                // What is wrong is in pixels at the border of what is seen: here, that of not more than 100 edges.
+                // What is wrong is in pixels at the border of what is seen of a polygon: here, not more than 16 edges.
                 assert!(error < border_pixels(16, resolution) * largest_pixel(resolution), "{resolution}: {error}");
                 worst.push(error);
                 let analytic = hemicube.analytic(&viewpoint, normal).unwrap();
                 let errors = analytic.factors().iter().zip(&exact).map(|(a, b)| (a - b).abs());
-                assert!(errors.fold(0.0, f64::max) < 60.0 * largest_pixel(resolution) * resolution as f64);
+                assert!(errors.fold(0.0, f64::max) < border_pixels(16, resolution) * largest_pixel(resolution));
                 assert!((analytic.total() - 1.0).abs() < 0.2);
                 assert!(analytic.evaluations() < 3 * resolution * resolution);
             }
@@ -338,7 +338,7 @@ fn rays_give_the_same_for_the_same_seed_and_refuse_what_makes_no_sense() {
     assert_eq!(rays.view(&free([f64::INFINITY, 0.0, 0.0]), normal, 9, 1).err(), Some(BaselineError::EyeNotFinite));
     assert_eq!(rays.view(&free([1e300, 0.0, 0.0]), normal, 9, 1).err(), Some(BaselineError::EyeTooFar));
     let mut nothing = Rays::new(&Scene::builder().build().unwrap());
-    assert!(nothing.view(&free([0.0; 3]), normal, 9, 1).unwrap().background() == 1.0);
+    assert!((nothing.view(&free([0.0; 3]), normal, 9, 1).unwrap().background() - 1.0).abs() < 1e-15);
 }
 
 #[test]
