@@ -30,6 +30,7 @@
 //! | [`bsp`] | the 3D BSP: front-to-back order from any point |
 //! | [`contour`] | the 2D BSP on the sphere of directions, contour images and their cells |
 //! | [`integral`] | solid angles and form factors of cells |
+//! | [`hemicube`] | baselines to compare with: the hemicube, with analytic form factors too, and rays |
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
 //! | [`io`] | reading scenes, writing results |
 //! | `testing` | with the feature of that name: strategies, degenerate scenes and checks for property tests |
@@ -40,6 +41,7 @@
 pub mod bsp;
 pub mod contour;
 pub mod exact;
+pub mod hemicube;
 pub mod integral;
 pub mod io;
 mod parallel;
