@@ -64,9 +64,15 @@ impl ApproxPlane {
         }
     }
 
-    /// The same with a normal from integers where f64 alone would know it poorly.
+    /// The same at any scale, with a normal from integers where f64 alone would know it poorly.
     pub(crate) fn refined(plane: &Plane) -> Self {
         let mut approx = Self::new(plane);
+        if approx.normal.is_poor()
+            && let Plane::Points(points) = plane
+            && let Some([a, b, c]) = near_one(points)
+        {
+            approx.normal = Approx3::edge_normal(a, b, c);
+        }
         if approx.normal.is_poor() {
             let frame = Frame::new(BitRange::of(plane.coordinates()), approx.anchor);
             let mut arena = Arena::default();
@@ -103,6 +109,15 @@ impl ApproxPlane {
         let err = m.iter().fold(0.0f64, |err, b| if b.rad.is_nan() { f64::INFINITY } else { err.max(b.rad) });
         Approx3::known(DVec3::from(m.map(|b| b.mid)), err)
     }
+}
+
+/// Points scaled by a power of two so that the largest coordinate is near 1, if that loses nothing.
+fn near_one(points: &[DVec3; 3]) -> Option<[DVec3; 3]> {
+    let largest = points.iter().fold(0.0f64, |most, p| most.max(p.abs().max_element()));
+    let exponent = (largest.to_bits() >> 52) as i32 - 1023;
+    let scale = 2.0_f64.powi((-exponent).clamp(-1020, 1020));
+    let scaled = points.map(|p| p * scale);
+    (scaled.map(|p| p / scale) == *points).then_some(scaled)
 }
 
 impl Approx3 {
