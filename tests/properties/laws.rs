@@ -73,7 +73,11 @@ proptest! {
     fn scaling_by_a_power_of_two_changes_no_bit(case in case(Mode::Grid), exponent in -100i32..100) {
         let scale = 2f64.powi(exponent);
         let scaled = Case { faces: case.faces.mapped(|p| p * scale), eye: case.eye * scale, ..case.clone() };
-        hold(check_same_bits(&hold(case.image())?, &hold(scaled.image())?))?;
+        let image = hold(case.image())?;
+        // On a surface the eye is rounded past its plane: where the plane meets 0, by the least number there is.
+        let eye = image.viewpoint().eye().to_array();
+        prop_assume!(eye.iter().all(|x| *x == 0.0 || x.abs() > 2f64.powi(-200)));
+        hold(check_same_bits(&image, &hold(scaled.image())?))?;
     }
 
     #[test]
