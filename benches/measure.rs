@@ -4,6 +4,7 @@
 
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
+use nusselt::bvh::SceneBvh;
 use nusselt::contour::{Domain, Projection, Projector, ViewOptions, Viewpoint, VisibleRegion};
 use nusselt::samples::{Kind, generate};
 use std::error::Error;
@@ -42,13 +43,19 @@ fn row(kind: Kind, polygons: usize, depth: Option<u32>, floor: bool) -> Result<(
     let start = Instant::now();
     let bsp = SceneBsp::build(&scene, &BspOptions::default())?;
     let built = start.elapsed().as_secs_f64();
+    let start = Instant::now();
+    let boxes = SceneBvh::build(&scene);
+    let boxed = start.elapsed().as_secs_f64();
+    let by_boxes = std::env::var("BOXES").is_ok();
+    if by_boxes { println!("boxes {boxed:.3} s, {} solid pieces of {}", boxes.solid_pieces(), scene.piece_count()); }
     let options = ViewOptions { quadtree_depth: depth, ..ViewOptions::default() };
     let (mut view, mut longest, mut factors, mut worst) = (0.0, 0.0f64, 0.0, 0.0f64);
     let mut counts = [0; 7];
     let points = if floor { mesh.floor_points(VIEWS, 3) } else { mesh.free_points(VIEWS, 3) };
     for point in points {
         let start = Instant::now();
-        let image = bsp.view_with(&Viewpoint::free(DVec3::from(point)), &Domain::Hemisphere(DVec3::Z), &options)?;
+        let eye = Viewpoint::free(DVec3::from(point));
+        let image = if by_boxes { boxes.view_with(&eye, &Domain::Hemisphere(DVec3::Z), &options)? } else { bsp.view_with(&eye, &Domain::Hemisphere(DVec3::Z), &options)? };
         let time = start.elapsed().as_secs_f64();
         let sums = image.form_factors().ok_or("a hemisphere has a normal")?;
         factors += start.elapsed().as_secs_f64() - time;

@@ -28,6 +28,7 @@
 //! | [`scene`] | polygons, objects, materials; building and checking them |
 //! | [`verify`] | proofs of contour images, an exact ray oracle, outside opinions; shares nothing with what follows |
 //! | [`bsp`] | the 3D BSP: front-to-back order from any point |
+//! | [`bvh`] | a hierarchy of boxes: the second way to a view, without cutting polygons |
 //! | [`contour`] | the 2D BSP on the sphere of directions, contour images and their cells |
 //! | [`integral`] | solid angles and form factors of cells |
 //! | [`hemicube`] | baselines to compare with: the hemicube, with analytic form factors too, and rays |
@@ -39,6 +40,7 @@
 //! Kaiserslautern, 1995.
 
 pub mod bsp;
+pub mod bvh;
 pub mod contour;
 pub mod exact;
 pub mod hemicube;

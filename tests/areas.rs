@@ -120,7 +120,7 @@ fn visible(seen: &Seen, all: &[Seen]) -> Opinion {
 }
 
 fn compare(name: &str, image: &ContourImage, counts: &mut Counts) {
-    let scene: &Scene = image.bsp().scene();
+    let scene: &Scene = image.scene();
     let eye = image.viewpoint().eye();
     counts.views += 1;
     for face in faces() {

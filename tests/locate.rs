@@ -82,7 +82,7 @@ struct Cells {
 
 impl Cells {
     fn of(image: &ContourImage) -> Self {
-        let scene = image.bsp().scene();
+        let scene = image.scene();
         let eye = exact(image.viewpoint().eye());
         let inward = |(splitter, inside): (Splitter, Sign)| {
             let normal = normal(scene, &eye, splitter);
@@ -164,7 +164,7 @@ struct Counts {
 fn check(image: &ContourImage, directions: impl IntoIterator<Item = DVec3>, counts: &mut Counts) {
     let cells = Cells::of(image);
     let eye = image.viewpoint().eye();
-    let oracle = RayOracle::new(image.bsp().scene());
+    let oracle = RayOracle::new(image.scene());
     for direction in directions {
         let location = image.locate(direction);
         assert_eq!(location, cells.locate(direction), "from {eye} towards {direction}");

@@ -11,7 +11,7 @@ fuzz_target!(|data: &[u8]| {
     if let Err(defect) = image.certify() {
         panic!("{defect}\n{case:?}");
     }
-    let scene = image.bsp().scene();
+    let scene = image.scene();
     if scene.piece_count() == 0 || image.cell_count() > 400 {
         return;
     }

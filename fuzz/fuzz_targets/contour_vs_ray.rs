@@ -7,7 +7,7 @@ use nusselt::testing::{Case, RayAnswer, RayOracle, check_labels};
 
 fuzz_target!(|case: Case| {
     let Ok(image) = case.image() else { return };
-    let oracle = RayOracle::new(image.bsp().scene());
+    let oracle = RayOracle::new(image.scene());
     if let Err(defect) = check_labels(&image, &oracle) {
         panic!("{defect}");
     }
@@ -15,7 +15,7 @@ fuzz_target!(|case: Case| {
     let Location::Cell(cell) = image.locate(case.direction) else { return };
     let seen = image.cell(cell).polygon();
     match oracle.cast(image.viewpoint().eye(), case.direction) {
-        RayAnswer::Hit { polygon, .. } if image.bsp().uncut_slivers().is_empty() => assert_eq!(seen, Some(polygon)),
+        RayAnswer::Hit { polygon, .. } if image.uncut_slivers().is_empty() => assert_eq!(seen, Some(polygon)),
         RayAnswer::Hit { .. } => assert!(seen.is_some()),
         RayAnswer::Miss => assert_eq!(seen, None),
         RayAnswer::Boundary => {}

@@ -118,7 +118,7 @@ impl<'a> FragmentRef<'a> {
 }
 
 /// The whole piece as a fragment's boundary.
-pub(super) fn whole_piece(scene: &Scene, piece: PieceId) -> Vec<FragmentSide> {
+pub(crate) fn whole_piece(scene: &Scene, piece: PieceId) -> Vec<FragmentSide> {
     let piece = scene.piece(piece);
     let edges = scene.edges();
     let sides = piece.vertices().iter().zip(piece.edges());
@@ -132,6 +132,6 @@ pub(super) fn whole_piece(scene: &Scene, piece: PieceId) -> Vec<FragmentSide> {
 }
 
 /// The box around a boundary.
-pub(super) fn bounds_of(skeleton: &Skeleton, sides: &[FragmentSide]) -> Bounds {
+pub(crate) fn bounds_of(skeleton: &Skeleton, sides: &[FragmentSide]) -> Bounds {
     Bounds::around(sides.iter().map(|side| skeleton.approx_point(side.point)))
 }

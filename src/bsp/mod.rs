@@ -22,7 +22,7 @@ pub use fragment::FragmentRef;
 pub use stats::BspStats;
 pub use traverse::{BackToFront, FrontToBack};
 
-pub(crate) use fragment::{Bounds, FragmentSide};
+pub(crate) use fragment::{Bounds, FragmentSide, bounds_of, whole_piece};
 pub(crate) use skeleton::{LineDef, LineId, PointId, Skeleton};
 pub(crate) use traverse::Step;
 

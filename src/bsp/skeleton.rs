@@ -8,7 +8,7 @@ use super::collinear::Collinear;
 use crate::exact::{
     Approx3, ApproxPlane, ApproxPoint, Arena, BitRange, Constructor, Frame, Plane, Point, Sign, Splitter, U, orient3d,
 };
-use crate::scene::{Axis, PlaneId, Scene, SupportingPlane, VertexId};
+use crate::scene::{Axis, PieceRef, PlaneId, Scene, Side, SupportingPlane, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -402,7 +402,17 @@ impl Skeleton {
         }
     }
 
-    fn vertex_side(&self, plane: PlaneId, vertex: VertexId) -> Sign {
+    /// The side of a piece that the eye is on; `None` if the eye is in its plane.
+    pub(crate) fn shown_side(&self, piece: PieceRef<'_>, eye: DVec3) -> Option<Side> {
+        match self.position_side(piece.plane_id(), eye) {
+            Sign::Zero => None,
+            Sign::Positive => Some(piece.facing()),
+            Sign::Negative => Some(piece.facing().opposite()),
+        }
+    }
+
+    /// The exact side of a plane that a vertex is on.
+    pub(crate) fn vertex_side(&self, plane: PlaneId, vertex: VertexId) -> Sign {
         if let SupportingPlane::Points(points) = self.plane(plane)
             && points.contains(&vertex)
         {
@@ -437,8 +447,13 @@ impl Skeleton {
     pub(crate) fn approx_line_normal(&self, eye: DVec3, line: LineId) -> Approx3 {
         match self.line(line) {
             LineDef::Edge([a, b]) => Approx3::edge_normal(eye, self.vertex(a), self.vertex(b)),
-            LineDef::Crease(planes) => ApproxPlane::crease(planes.map(|p| &self.approx_planes[p.index()]), eye),
+            LineDef::Crease(planes) => self.approx_crease_normal(eye, planes),
         }
+    }
+
+    /// The normal of the great circle through the line where two planes meet.
+    pub(crate) fn approx_crease_normal(&self, eye: DVec3, planes: [PlaneId; 2]) -> Approx3 {
+        ApproxPlane::crease(planes.map(|p| &self.approx_planes[p.index()]), eye)
     }
 
     /// A plane's normal, pointing to its front.

@@ -2,7 +2,7 @@
 
 use super::{FragmentId, FragmentRef, Node, SceneBsp, Tree};
 use crate::exact::Sign;
-use crate::scene::{PieceId, Side};
+use crate::scene::Side;
 use glam::DVec3;
 
 impl SceneBsp {
@@ -119,7 +119,7 @@ impl Tree {
     pub(crate) fn nearest_first(&self, node: &Node, eye: DVec3, out: &mut Vec<FragmentId>) {
         let mut backs = Vec::new();
         for k in node.fragments.clone() {
-            match self.shown_side(self.fragments[k as usize].piece, eye) {
+            match self.skeleton.shown_side(self.scene.piece(self.fragments[k as usize].piece), eye) {
                 None => {}
                 Some(Side::Front) => out.push(FragmentId(k)),
                 Some(Side::Back) => backs.push(FragmentId(k)),
@@ -128,14 +128,4 @@ impl Tree {
         out.append(&mut backs);
     }
 
-    /// The side of a piece that the eye is on; `None` if the eye is in its plane.
-    pub(crate) fn shown_side(&self, piece: PieceId, eye: DVec3) -> Option<Side> {
-        let piece = self.scene.piece(piece);
-        let facing = piece.facing();
-        match self.skeleton.position_side(piece.plane_id(), eye) {
-            Sign::Zero => None,
-            Sign::Positive => Some(facing),
-            Sign::Negative => Some(facing.opposite()),
-        }
-    }
 }

@@ -9,7 +9,6 @@ use crate::verify::{
 impl ContourImage {
     /// What the image claims, by exact definition. Its cells have the numbers that they have here.
     pub fn evidence(&self) -> Evidence {
-        let bsp = self.bsp();
         // Numbered in the order of their first use.
         let mut numbers = vec![None; self.tree.directions.circle_count()];
         let mut splitters = Vec::new();
@@ -17,7 +16,7 @@ impl ContourImage {
             let sides = cell.arcs().iter().map(|arc| {
                 let circle = arc.along.circle();
                 let splitter = *numbers[circle.0 as usize].get_or_insert_with(|| {
-                    splitters.push(self.tree.directions.splitter(&bsp.tree, circle));
+                    splitters.push(self.tree.directions.splitter(self.skeleton(), circle));
                     splitters.len() as u32 - 1
                 });
                 HalfSphere { splitter, inside: arc.along.inside() }
@@ -25,7 +24,7 @@ impl ContourImage {
             EvidenceCell { piece: cell.piece(), sides: sides.collect() }
         });
         let cells = cells.collect();
-        let slivers = bsp.uncut_slivers().iter().map(|sliver| EvidenceSliver {
+        let slivers = self.uncut_slivers().iter().map(|sliver| EvidenceSliver {
             piece: sliver.piece,
             plane: sliver.plane,
             beyond: sliver.beyond,
@@ -39,7 +38,7 @@ impl ContourImage {
         Evidence {
             eye: self.viewpoint().eye(),
             domain,
-            epsilon: bsp.epsilon(),
+            epsilon: self.epsilon(),
             slivers: slivers.collect(),
             splitters,
             cells,
@@ -63,6 +62,6 @@ impl ContourImage {
     /// # Errors
     /// The first defect found: there should be none, so please report it.
     pub fn certify(&self) -> Result<Certificate, Defect> {
-        self.evidence().check(self.bsp().scene(), Arithmetic::Kernel)
+        self.evidence().check(self.scene(), Arithmetic::Kernel)
     }
 }

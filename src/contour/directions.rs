@@ -1,7 +1,7 @@
 //! Great circles and directions of one view, by exact definition, and the one predicate of the
 //! contour tree: on which side of a great circle a direction lies.
 
-use crate::bsp::{LineDef, LineId, PointId, Skeleton, Tree};
+use crate::bsp::{LineDef, LineId, PointId, Skeleton};
 use crate::exact::{self, Approx3, Arena, Constructor, Frame, Kept3, PredicateStats, Sign, ZeroComponents};
 use crate::scene::{PlaneId, Splitter};
 use glam::DVec3;
@@ -21,6 +21,8 @@ pub(crate) struct DirectionId(pub(crate) u32);
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum CircleDef {
     Line(LineId),
+    /// Where two planes of the scene meet, in the order of their numbers.
+    Crease([PlaneId; 2]),
     Given(DVec3),
     Parallel(PlaneId),
 }
@@ -118,6 +120,11 @@ impl Directions {
 
     pub(crate) fn push_line(&mut self, skeleton: &Skeleton, line: LineId, cache: &mut ExactCache) -> CircleId {
         self.push_circle(skeleton, CircleDef::Line(line), skeleton.approx_line_normal(self.eye, line), cache)
+    }
+
+    /// The great circle through the line where two planes meet, in the order of their numbers.
+    pub(crate) fn push_crease(&mut self, skeleton: &Skeleton, planes: [PlaneId; 2], cache: &mut ExactCache) -> CircleId {
+        self.push_circle(skeleton, CircleDef::Crease(planes), skeleton.approx_crease_normal(self.eye, planes), cache)
     }
 
     pub(crate) fn push_given(&mut self, skeleton: &Skeleton, normal: DVec3, cache: &mut ExactCache) -> CircleId {
@@ -248,6 +255,7 @@ impl Directions {
     fn resolved(&self, skeleton: &Skeleton, c: CircleId) -> exact::Splitter {
         match self.circles[c.0 as usize] {
             CircleDef::Line(line) => skeleton.resolved_line(line),
+            CircleDef::Crease(planes) => exact::Splitter::Crease(planes.map(|p| skeleton.resolved_plane(p))),
             CircleDef::Given(normal) => exact::Splitter::Given(normal),
             CircleDef::Parallel(plane) => exact::Splitter::Parallel(skeleton.resolved_plane(plane)),
         }
@@ -321,14 +329,15 @@ impl Directions {
         &self.normals[c.0 as usize]
     }
 
-    pub(crate) fn splitter(&self, tree: &Tree, c: CircleId) -> Splitter {
+    pub(crate) fn splitter(&self, skeleton: &Skeleton, c: CircleId) -> Splitter {
         match self.circles[c.0 as usize] {
-            CircleDef::Line(line) => match tree.skeleton.line(line) {
+            CircleDef::Line(line) => match skeleton.line(line) {
                 LineDef::Edge(ends) => Splitter::Edge(ends),
-                LineDef::Crease(planes) => Splitter::Crease(planes.map(|p| tree.skeleton.plane(p))),
+                LineDef::Crease(planes) => Splitter::Crease(planes.map(|p| skeleton.plane(p))),
             },
+            CircleDef::Crease(planes) => Splitter::Crease(planes.map(|p| skeleton.plane(p))),
             CircleDef::Given(normal) => Splitter::Given(normal),
-            CircleDef::Parallel(plane) => Splitter::Parallel(tree.skeleton.plane(plane)),
+            CircleDef::Parallel(plane) => Splitter::Parallel(skeleton.plane(plane)),
         }
     }
 }

@@ -5,9 +5,10 @@ use super::polygon::PolygonArc;
 use super::tree::{ContourTree, LeafState, Link};
 use super::view::ViewStats;
 use super::viewpoint::Viewpoint;
-use crate::bsp::{FragmentId, SceneBsp};
+use crate::bsp::{SceneBsp, Skeleton, UncutSliver};
+use crate::bvh::SceneBvh;
 use crate::exact::Sign;
-use crate::scene::{PieceId, PolygonId, Side, Splitter};
+use crate::scene::{PieceId, PolygonId, Scene, Side, Splitter};
 use glam::DVec3;
 
 /// A cell of a [`ContourImage`], numbered from 0.
@@ -21,11 +22,18 @@ impl CellId {
     }
 }
 
+/// What a view was made of, each of which gives the same view.
+#[derive(Clone, Debug)]
+pub(super) enum Source {
+    Bsp(SceneBsp),
+    Bvh(SceneBvh),
+}
+
 /// The exact subdivision of a domain of directions into convex cells, each with the polygon seen in
 /// all of it, or with nothing.
 #[derive(Clone, Debug)]
 pub struct ContourImage {
-    bsp: SceneBsp,
+    source: Source,
     viewpoint: Viewpoint,
     domain: Domain,
     pub(super) tree: ContourTree,
@@ -37,7 +45,7 @@ pub struct ContourImage {
 
 impl ContourImage {
     pub(super) fn new(
-        bsp: SceneBsp,
+        source: Source,
         viewpoint: Viewpoint,
         domain: Domain,
         tree: ContourTree,
@@ -52,12 +60,38 @@ impl ContourImage {
                 leaves.push(k as u32);
             }
         }
-        Self { bsp, viewpoint, domain, tree, leaves, cell_of_leaf, stats }
+        Self { source, viewpoint, domain, tree, leaves, cell_of_leaf, stats }
     }
 
-    /// The scene's 3D BSP.
-    pub fn bsp(&self) -> &SceneBsp {
-        &self.bsp
+    /// The scene that is seen.
+    pub fn scene(&self) -> &Scene {
+        match &self.source {
+            Source::Bsp(bsp) => bsp.scene(),
+            Source::Bvh(bvh) => bvh.scene(),
+        }
+    }
+
+    pub(crate) fn skeleton(&self) -> &Skeleton {
+        match &self.source {
+            Source::Bsp(bsp) => &bsp.tree.skeleton,
+            Source::Bvh(bvh) => &bvh.hierarchy.skeleton,
+        }
+    }
+
+    /// What a 3D BSP left uncut because of its epsilon; empty if that is 0, and without a BSP.
+    pub fn uncut_slivers(&self) -> &[UncutSliver] {
+        match &self.source {
+            Source::Bsp(bsp) => bsp.uncut_slivers(),
+            Source::Bvh(_) => &[],
+        }
+    }
+
+    /// The epsilon of the 3D BSP, in scene units; 0 without one.
+    pub fn epsilon(&self) -> f64 {
+        match &self.source {
+            Source::Bsp(bsp) => bsp.epsilon(),
+            Source::Bvh(_) => 0.0,
+        }
     }
 
     /// Where it was seen from.
@@ -75,7 +109,7 @@ impl ContourImage {
         match self.domain {
             Domain::Sphere => None,
             Domain::Hemisphere(normal) => Some((normal / normal.abs().max_element()).normalize()),
-            Domain::Above => self.viewpoint.surface_normal(&self.bsp),
+            Domain::Above => self.viewpoint.surface_normal(self.scene(), self.skeleton()),
         }
     }
 
@@ -117,7 +151,7 @@ impl ContourImage {
                 if side.along.inside().is_positive() || ends_domain[k] {
                     let next = sides[(k + 1) % sides.len()];
                     let ends = [side.from, next.from].map(|d| self.tree.directions.unit(d));
-                    let splitter = self.tree.directions.splitter(&self.bsp.tree, side.along.circle());
+                    let splitter = self.tree.directions.splitter(self.skeleton(), side.along.circle());
                     arcs.push(TreeArc { ends, splitter });
                 }
             }
@@ -158,27 +192,22 @@ impl<'a> Cell<'a> {
         self.image
     }
 
-    /// The fragment seen in it; `None` for background.
-    pub fn fragment(self) -> Option<FragmentId> {
-        match self.image.tree.leaves[self.leaf as usize].state {
-            LeafState::Filled(fragment) => Some(fragment),
-            LeafState::Open | LeafState::Outside => None,
-        }
-    }
-
     /// The polygon seen in it; `None` for background.
     pub fn polygon(self) -> Option<PolygonId> {
-        self.fragment().map(|id| self.image.bsp.fragment(id).polygon())
+        self.piece().map(|id| self.image.scene().piece(id).polygon())
     }
 
     /// The piece of the polygon seen in it.
     pub fn piece(self) -> Option<PieceId> {
-        self.fragment().map(|id| self.image.bsp.fragment(id).piece())
+        match self.image.tree.leaves[self.leaf as usize].state {
+            LeafState::Filled(piece) => Some(piece),
+            LeafState::Open | LeafState::Outside => None,
+        }
     }
 
     /// The side of the polygon seen in it.
     pub fn side(self) -> Option<Side> {
-        self.image.bsp.tree.shown_side(self.piece()?, self.image.viewpoint.eye())
+        self.image.skeleton().shown_side(self.image.scene().piece(self.piece()?), self.image.viewpoint.eye())
     }
 
     /// Its corners as unit directions, counter-clockwise seen from outside of the sphere. Rounded:
@@ -190,15 +219,15 @@ impl<'a> Cell<'a> {
     /// The great circles it is bounded by, each with the sign that directions inside have: number `k`
     /// leads from corner `k` to corner `k + 1`.
     pub fn splitters(self) -> impl ExactSizeIterator<Item = (Splitter, Sign)> + 'a {
-        let tree = &self.image.bsp.tree;
+        let skeleton = self.image.skeleton();
         let directions = &self.image.tree.directions;
-        self.arcs().iter().map(move |arc| (directions.splitter(tree, arc.along.circle()), arc.along.inside()))
+        self.arcs().iter().map(move |arc| (directions.splitter(skeleton, arc.along.circle()), arc.along.inside()))
     }
 
     /// Where the ray in a unit direction meets the plane of the polygon seen; `None` for background.
     pub fn point_at(self, direction: DVec3) -> Option<DVec3> {
-        let skeleton = &self.image.bsp.tree.skeleton;
-        let plane = self.image.bsp.scene().piece(self.piece()?).plane_id();
+        let skeleton = self.image.skeleton();
+        let plane = self.image.scene().piece(self.piece()?).plane_id();
         let normal = skeleton.approx_normal(plane).v;
         let eye = self.image.viewpoint.eye();
         let point = eye + direction * (normal.dot(skeleton.anchor(plane) - eye) / normal.dot(direction));

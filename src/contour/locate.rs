@@ -83,7 +83,7 @@ impl ContourImage {
         if !direction.is_finite() || direction == DVec3::ZERO {
             return Location::Outside;
         }
-        let skeleton = &self.bsp().tree.skeleton;
+        let skeleton = self.skeleton();
         let mut cache = ExactCache::default();
         let mut stack = vec![self.root()];
         let mut is_on_splitter = false;
@@ -124,7 +124,7 @@ impl ContourImage {
 
     /// True if a direction on the boundary of a leaf is where it turns.
     fn is_corner(&self, leaf: u32, direction: DVec3, cache: &mut ExactCache) -> bool {
-        let skeleton = &self.bsp().tree.skeleton;
+        let skeleton = self.skeleton();
         let directions = &self.tree.directions;
         let arcs = self.tree.boundary(leaf);
         let mut first = None;

@@ -21,7 +21,7 @@ impl Cell<'_> {
     /// number. The cost is that of sending each side down the contour tree.
     pub fn neighbours(self) -> Vec<Neighbour> {
         let image = self.image();
-        let skeleton = &image.bsp().tree.skeleton;
+        let skeleton = image.skeleton();
         let directions = &image.tree.directions;
         let mut across = Across { skeleton, directions, cache: ExactCache::default() };
         let arcs = self.arcs();

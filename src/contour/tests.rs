@@ -19,7 +19,7 @@ fn solid_angle_of(image: &ContourImage) -> f64 {
 }
 
 fn check(image: &ContourImage) {
-    let skeleton = &image.bsp().tree.skeleton;
+    let skeleton = image.skeleton();
     let mut cache = ExactCache::default();
     let mut across = BTreeSet::new();
     for cell in image.cells() {

@@ -2,9 +2,11 @@
 
 use super::directions::{CircleId, DirectionId, Directions};
 use super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
-use crate::bsp::{Bounds, FragmentId, Skeleton};
+use crate::bsp::Skeleton;
 use crate::exact::{SeenBox, Sign};
+use crate::scene::PieceId;
 use glam::DVec3;
+use std::ops::Range;
 
 /// A place in the tree: an inner node or a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,8 +21,8 @@ pub(crate) struct TreeNode {
     pub(crate) negative: Link,
     pub(crate) positive: Link,
     parent: Option<u32>,
-    /// Some leaf below is open.
-    open: bool,
+    /// The greatest of the leaves below.
+    far: f64,
 }
 
 /// What is known of a leaf.
@@ -30,14 +32,16 @@ pub(crate) enum LeafState {
     Open,
     /// Not part of the domain.
     Outside,
-    /// Filled by a fragment, which hides all that come later.
-    Filled(FragmentId),
+    /// A piece of a polygon is seen in it.
+    Filled(PieceId),
 }
 
 /// A convex region of directions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Leaf {
     pub(crate) state: LeafState,
+    /// Nothing that is at least this far from the eye can be seen in it: infinite if it is open.
+    far: f64,
     start: u32,
     len: u32,
     parent: Option<u32>,
@@ -52,6 +56,25 @@ pub(crate) struct ContourTree {
     pub(crate) root: Link,
     /// The boundaries of leaves, one after the other; those of former leaves too.
     arcs: Vec<PolygonArc>,
+}
+
+/// What a polygon is put in for.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Filler {
+    pub(crate) piece: PieceId,
+    /// Leaves of which `far` is at most this stay as they are.
+    pub(crate) near: f64,
+    /// What becomes `far` of the leaves it fills: 0 if nothing can come in front of it.
+    pub(crate) far: f64,
+}
+
+/// How a polygon that is put in lies to the piece that fills a leaf, in that leaf.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verdict {
+    Behind,
+    InFront,
+    /// In front within the half sphere, behind outside of it. The polygon's part in the leaf, which has corners on both sides, was classified last.
+    InFrontWithin(HalfSphere),
 }
 
 /// Buffers that insertion needs.
@@ -104,7 +127,7 @@ impl ContourTree {
         let node = self.nodes.len() as u32;
         let unset = Link::Leaf(u32::MAX);
         let circle = planes[signs.len()];
-        self.nodes.push(TreeNode { circle, negative: unset, positive: unset, parent, open: true });
+        self.nodes.push(TreeNode { circle, negative: unset, positive: unset, parent, far: f64::INFINITY });
         let [negative, positive] = [Sign::Negative, Sign::Positive].map(|sign| {
             signs.push(sign);
             let child = self.octant_node(planes, poles, signs, Some(node));
@@ -125,7 +148,7 @@ impl ContourTree {
     fn open_leaf(&mut self, boundary: &[PolygonArc], parent: Option<u32>) -> Leaf {
         let start = self.arcs.len() as u32;
         self.arcs.extend_from_slice(boundary);
-        Leaf { state: LeafState::Open, start, len: boundary.len() as u32, parent }
+        Leaf { state: LeafState::Open, far: f64::INFINITY, start, len: boundary.len() as u32, parent }
     }
 
     /// The boundary of a leaf.
@@ -134,15 +157,15 @@ impl ContourTree {
         &self.arcs[leaf.start as usize..(leaf.start + leaf.len) as usize]
     }
 
-    /// True if some leaf is open.
-    pub(crate) fn is_open(&self) -> bool {
-        self.link_open(self.root)
+    /// Nothing that is at least this far from the eye can be seen.
+    pub(crate) fn far(&self) -> f64 {
+        self.link_far(self.root)
     }
 
-    fn link_open(&self, link: Link) -> bool {
+    fn link_far(&self, link: Link) -> f64 {
         match link {
-            Link::Node(node) => self.nodes[node as usize].open,
-            Link::Leaf(leaf) => self.leaves[leaf as usize].state == LeafState::Open,
+            Link::Node(node) => self.nodes[node as usize].far,
+            Link::Leaf(leaf) => self.leaves[leaf as usize].far,
         }
     }
 
@@ -156,16 +179,17 @@ impl ContourTree {
         }
     }
 
-    /// Gives an open leaf its final state and tells the nodes above.
-    fn close(&mut self, leaf: u32, state: LeafState) {
-        self.leaves[leaf as usize].state = state;
-        let mut above = self.leaves[leaf as usize].parent;
+    /// Gives a leaf its state and tells the nodes above.
+    fn close(&mut self, leaf: u32, state: LeafState, far: f64) {
+        let Leaf { parent: mut above, .. } = self.leaves[leaf as usize];
+        (self.leaves[leaf as usize].state, self.leaves[leaf as usize].far) = (state, far);
         while let Some(node) = above {
-            let TreeNode { negative, positive, parent, .. } = self.nodes[node as usize];
-            if self.link_open(negative) || self.link_open(positive) {
+            let TreeNode { negative, positive, parent, far, .. } = self.nodes[node as usize];
+            let most = self.link_far(negative).max(self.link_far(positive));
+            if most == far {
                 return;
             }
-            self.nodes[node as usize].open = false;
+            self.nodes[node as usize].far = most;
             above = parent;
         }
     }
@@ -176,7 +200,7 @@ impl ContourTree {
             let [inside, outside] = self.cut_leaf(skeleton, leaf, domain, work);
             debug_assert!(inside.is_some() || outside.is_some());
             if let Some(outside) = outside {
-                self.close(outside, LeafState::Outside);
+                self.close(outside, LeafState::Outside, 0.0);
             }
         }
     }
@@ -218,34 +242,48 @@ impl ContourTree {
         // The leaf itself becomes the negative child, so that no leaf is ever out of the tree.
         let positive = self.push_leaf(&work.positive, Some(node));
         self.leaves[leaf as usize] = self.open_leaf(&work.negative, Some(node));
-        self.nodes.push(TreeNode { circle: half.circle(), negative: Link::Leaf(leaf), positive, parent, open: true });
+        self.nodes.push(TreeNode { circle: half.circle(), negative: Link::Leaf(leaf), positive, parent, far: f64::INFINITY });
         let Link::Leaf(positive) = positive else { return [None, None] };
         if half.inside().is_positive() { [Some(positive), Some(leaf)] } else { [Some(leaf), Some(positive)] }
     }
 
-    /// Puts a convex spherical polygon in front of nothing: it fills what is open of its inside.
+    /// Puts in a convex spherical polygon, which is all on the side of `top` where that is: it fills what is open
+    /// of its inside, and what `judge` takes for it from the pieces that are there.
     pub(crate) fn insert(
         &mut self,
         skeleton: &Skeleton,
+        top: Link,
         polygon: &[PolygonArc],
-        fragment: FragmentId,
+        filler: &Filler,
+        mut judge: impl FnMut(&mut Directions, &mut Knife, PieceId, &[PolygonArc]) -> Verdict,
         work: &mut Workspace,
     ) {
         work.arcs.clear();
         work.arcs.extend_from_slice(polygon);
         work.stack.clear();
-        work.stack.push((self.root, 0, polygon.len()));
+        work.stack.push((top, 0, polygon.len()));
         while let Some((link, start, len)) = work.stack.pop() {
             let node = match link {
                 Link::Leaf(leaf) => {
-                    if self.leaves[leaf as usize].state == LeafState::Open {
-                        self.fill(skeleton, leaf, start..start + len, fragment, work);
-                    }
+                    let Leaf { state, far, .. } = self.leaves[leaf as usize];
+                    let verdict = match state {
+                        LeafState::Filled(piece) if far > filler.near => {
+                            judge(&mut self.directions, &mut work.knife, piece, &work.arcs[start..start + len])
+                        }
+                        LeafState::Open => Verdict::InFront,
+                        LeafState::Filled(_) | LeafState::Outside => Verdict::Behind,
+                    };
+                    let range = match verdict {
+                        Verdict::Behind => continue,
+                        Verdict::InFront => start..start + len,
+                        Verdict::InFrontWithin(half) => self.cut_off(skeleton, start..start + len, half, work),
+                    };
+                    self.fill(skeleton, leaf, range, filler, work);
                     continue;
                 }
                 Link::Node(node) => &self.nodes[node as usize],
             };
-            if !node.open {
+            if node.far <= filler.near {
                 continue;
             }
             work.visited += 1;
@@ -273,7 +311,7 @@ impl ContourTree {
                         &mut work.positive,
                     );
                     for (child, arcs) in [(negative, &work.negative), (positive, &work.positive)] {
-                        if self.link_open(child) {
+                        if self.link_far(child) > filler.near {
                             let start = work.arcs.len();
                             work.arcs.extend_from_slice(arcs);
                             work.stack.push((child, start, arcs.len()));
@@ -284,19 +322,43 @@ impl ContourTree {
         }
     }
 
-    /// Fills the part of an open leaf that a polygon within it covers.
+    /// The part of a polygon, classified last, within a half sphere.
+    fn cut_off(
+        &mut self,
+        skeleton: &Skeleton,
+        polygon: Range<usize>,
+        half: HalfSphere,
+        work: &mut Workspace,
+    ) -> Range<usize> {
+        work.negative.clear();
+        work.positive.clear();
+        work.knife.cut(
+            skeleton,
+            &mut self.directions,
+            &work.arcs[polygon],
+            half.circle(),
+            |_| None,
+            &mut work.negative,
+            &mut work.positive,
+        );
+        let start = work.arcs.len();
+        work.arcs.extend_from_slice(if half.inside().is_positive() { &work.positive } else { &work.negative });
+        start..work.arcs.len()
+    }
+
+    /// Fills the part of a leaf that a polygon within it covers.
     ///
     /// Every side of the polygon that is not on the leaf's boundary becomes a node; what lies outside
-    /// of it stays open.
+    /// of it stays as it is.
     fn fill(
         &mut self,
         skeleton: &Skeleton,
         leaf: u32,
-        polygon: std::ops::Range<usize>,
-        fragment: FragmentId,
+        polygon: Range<usize>,
+        filler: &Filler,
         work: &mut Workspace,
     ) {
-        let Leaf { start, len, mut parent, .. } = self.leaves[leaf as usize];
+        let Leaf { state, far, start, len, mut parent } = self.leaves[leaf as usize];
         let mut here = Link::Leaf(leaf);
         work.region.clear();
         work.region.extend_from_slice(&self.arcs[start as usize..(start + len) as usize]);
@@ -341,25 +403,27 @@ impl ContourTree {
             let (outside, kept) =
                 if inside.is_positive() { (&work.negative, &work.positive) } else { (&work.positive, &work.negative) };
             let outside = self.push_leaf(outside, Some(node));
+            if let Some(last) = self.leaves.last_mut() {
+                (last.state, last.far) = (state, far);
+            }
             work.region.clear();
             work.region.extend_from_slice(kept);
             here = Link::Leaf(leaf);
             let (negative, positive) = if inside.is_positive() { (outside, here) } else { (here, outside) };
-            self.nodes.push(TreeNode { circle, negative, positive, parent, open: true });
+            self.nodes.push(TreeNode { circle, negative, positive, parent, far });
             parent = Some(node);
         }
         self.leaves[leaf as usize] = self.open_leaf(&work.arcs[polygon], parent);
-        self.close(leaf, LeafState::Filled(fragment));
+        self.close(leaf, LeafState::Filled(filler.piece), filler.far);
     }
 
-    /// True if nothing in the box can be seen: every leaf that its projection may meet is closed. Errs
-    /// only towards false.
-    pub(crate) fn hides(&self, eye: DVec3, bounds: &Bounds, work: &mut Workspace) -> bool {
-        let seen = SeenBox::new(eye, bounds.low, bounds.high);
+    /// True if nothing in the box, which is at least `near` from the eye, can be seen: every leaf that its projection
+    /// may meet is filled by what is nearer. Errs only towards false. The projection is all on the side of `top` where that is.
+    pub(crate) fn hides(&self, top: Link, seen: &SeenBox, near: f64, work: &mut Workspace) -> bool {
         work.links.clear();
-        work.links.push(self.root);
+        work.links.push(top);
         while let Some(link) = work.links.pop() {
-            if !self.link_open(link) {
+            if self.link_far(link) <= near {
                 continue;
             }
             let Link::Node(node) = link else { return false };
@@ -371,6 +435,27 @@ impl ContourTree {
             }
         }
         true
+    }
+}
+
+impl ContourTree {
+    /// The lowest node below `top` that all of the box's projection is on the side of.
+    pub(crate) fn around(&self, top: Link, seen: &SeenBox) -> Link {
+        let mut link = top;
+        while let Link::Node(number) = link {
+            let node = &self.nodes[number as usize];
+            let child = match seen.side(self.directions.normal(node.circle)) {
+                Some(Sign::Positive) => node.positive,
+                Some(_) => node.negative,
+                None => break,
+            };
+            // A leaf may become a node later, and then it is only a part of it.
+            if let Link::Leaf(_) = child {
+                break;
+            }
+            link = child;
+        }
+        link
     }
 }
 

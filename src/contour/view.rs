@@ -1,15 +1,17 @@
-//! Making a contour image: the walk through the 3D BSP and what it puts into the contour tree.
+//! Making a contour image: the two ways to it, and what they share.
+
+mod by_boxes;
+mod by_bsp;
 
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use super::domain::Domain;
-use super::image::ContourImage;
 use super::polygon::{HalfSphere, PolygonArc};
 use super::subdivision::subdivide;
 use super::tree::{ContourTree, Workspace};
 use super::viewpoint::Viewpoint;
-use crate::bsp::{FragmentId, LineDef, LineId, PointId, SceneBsp, Step, Tree};
+use crate::bsp::{FragmentSide, LineDef, LineId, PointId, Skeleton};
 use crate::exact::{PredicateStats, Sign};
-use crate::scene::Side;
+use crate::scene::{PieceRef, Scene, Side};
 use glam::DVec3;
 
 /// How a view is made. None of it changes what is seen, only the cost and how cells are cut.
@@ -61,73 +63,20 @@ pub enum ViewError {
 /// What a view took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewStats {
-    /// Fragments put into the contour tree.
+    /// Fragments, or whole pieces, put into the contour tree.
     pub inserted: usize,
-    /// Subtrees of the 3D BSP that were left out because nothing in them can be seen.
+    /// Subtrees of the 3D BSP, or of the hierarchy of boxes, that were left out because nothing in them can be seen.
     pub skipped_subtrees: usize,
-    /// Nodes of the contour tree that fragments went through.
+    /// Nodes of the contour tree that they went through.
     pub visited_nodes: u64,
     /// Sides of great circles that were asked for, and what decided them.
     pub predicates: PredicateStats,
 }
 
-impl SceneBsp {
-    /// The contour image from a viewpoint.
-    ///
-    /// # Errors
-    /// If the eye or a normal is not finite or zero, or if the domain does not suit the viewpoint.
-    pub fn view(&self, viewpoint: &Viewpoint, domain: &Domain) -> Result<ContourImage, ViewError> {
-        self.view_with(viewpoint, domain, &ViewOptions::default())
-    }
-
-    /// The same with options.
-    ///
-    /// # Errors
-    /// As [`SceneBsp::view`]; also if the quadtree is to have too many levels, or if there are too many
-    /// cells.
-    pub fn view_with(
-        &self,
-        viewpoint: &Viewpoint,
-        domain: &Domain,
-        options: &ViewOptions,
-    ) -> Result<ContourImage, ViewError> {
-        let eye = viewpoint.eye();
-        if !eye.is_finite() {
-            return Err(ViewError::EyeNotFinite);
-        }
-        let depth = options.quadtree_depth.unwrap_or_else(|| default_depth(self.scene().polygon_count()));
-        if depth > 8 {
-            return Err(ViewError::TooDeep { depth });
-        }
-        let tree = &self.tree;
-        let mut work = Workspace::default();
-        let directions = Directions::new(&tree.skeleton, eye);
-        let mut contour = ContourTree::octants(&tree.skeleton, directions, &mut work.knife);
-        if let Some(horizon) = horizon(tree, viewpoint, domain, &mut contour.directions, &mut work.knife.cache)? {
-            contour.clip(&tree.skeleton, horizon, &mut work);
-        }
-        subdivide(&mut contour, &tree.skeleton, depth, &mut work);
-        let mut builder = ViewBuilder {
-            tree,
-            eye,
-            contour,
-            work,
-            line_circles: vec![NONE; tree.skeleton.line_count()],
-            point_directions: vec![NONE; tree.skeleton.point_count()],
-            polygon: Vec::new(),
-            stats: ViewStats::default(),
-        };
-        builder.walk(options.max_cells)?;
-        let ViewBuilder { contour, work, mut stats, .. } = builder;
-        stats.visited_nodes = work.visited;
-        stats.predicates = work.knife.cache.predicates();
-        Ok(ContourImage::new(self.clone(), *viewpoint, *domain, contour, stats))
-    }
-}
-
 /// The horizon of a domain, if it has one.
 fn horizon(
-    tree: &Tree,
+    scene: &Scene,
+    skeleton: &Skeleton,
     viewpoint: &Viewpoint,
     domain: &Domain,
     directions: &mut Directions,
@@ -139,12 +88,12 @@ fn horizon(
             if !normal.is_finite() || normal == DVec3::ZERO {
                 return Err(ViewError::BadNormal);
             }
-            Ok(Some(HalfSphere::new(directions.push_given(&tree.skeleton, normal, cache), Sign::Positive)))
+            Ok(Some(HalfSphere::new(directions.push_given(skeleton, normal, cache), Sign::Positive)))
         }
         Domain::Above => {
             let (piece, side) = viewpoint.surface_piece().ok_or(ViewError::NotOnSurface)?;
-            let piece = tree.scene.piece(piece);
-            let circle = directions.push_parallel(&tree.skeleton, piece.plane_id(), cache);
+            let piece = scene.piece(piece);
+            let circle = directions.push_parallel(skeleton, piece.plane_id(), cache);
             let up = if piece.facing() == side { Sign::Positive } else { Sign::Negative };
             Ok(Some(HalfSphere::new(circle, up)))
         }
@@ -162,8 +111,9 @@ fn default_depth(polygons: usize) -> u32 {
 
 const NONE: u32 = u32::MAX;
 
-struct ViewBuilder<'a> {
-    tree: &'a Tree,
+/// A view that is being made.
+struct Sight<'a> {
+    skeleton: &'a Skeleton,
     eye: DVec3,
     contour: ContourTree,
     work: Workspace,
@@ -174,47 +124,56 @@ struct ViewBuilder<'a> {
     stats: ViewStats,
 }
 
-impl ViewBuilder<'_> {
-    fn walk(&mut self, max_cells: usize) -> Result<(), ViewError> {
-        let tree = self.tree;
-        let mut stack = if tree.nodes.is_empty() { Vec::new() } else { vec![Step::Subtree(0)] };
-        let mut fragments = Vec::new();
-        while let Some(step) = stack.pop() {
-            if self.contour.leaves.len() > max_cells {
-                return Err(ViewError::TooManyCells { limit: max_cells });
-            }
-            if !self.contour.is_open() {
-                break;
-            }
-            match step {
-                Step::Subtree(node) => {
-                    if self.contour.hides(self.eye, &tree.nodes[node as usize].bounds, &mut self.work) {
-                        self.stats.skipped_subtrees += 1;
-                    } else {
-                        stack.extend(tree.steps(node, self.eye).into_iter().rev().flatten());
-                    }
-                }
-                Step::Fragments(node) => {
-                    fragments.clear();
-                    tree.nearest_first(&tree.nodes[node as usize], self.eye, &mut fragments);
-                    for &id in &fragments {
-                        self.insert(id);
-                    }
-                }
-            }
+impl<'a> Sight<'a> {
+    /// The domain, cut as the options say, with nothing seen in it yet.
+    fn new(
+        scene: &Scene,
+        skeleton: &'a Skeleton,
+        viewpoint: &Viewpoint,
+        domain: &Domain,
+        options: &ViewOptions,
+    ) -> Result<Self, ViewError> {
+        let eye = viewpoint.eye();
+        if !eye.is_finite() {
+            return Err(ViewError::EyeNotFinite);
         }
-        Ok(())
+        let depth = options.quadtree_depth.unwrap_or_else(|| default_depth(scene.polygon_count()));
+        if depth > 8 {
+            return Err(ViewError::TooDeep { depth });
+        }
+        let mut work = Workspace::default();
+        let mut contour = ContourTree::octants(skeleton, Directions::new(skeleton, eye), &mut work.knife);
+        let cache = &mut work.knife.cache;
+        if let Some(horizon) = horizon(scene, skeleton, viewpoint, domain, &mut contour.directions, cache)? {
+            contour.clip(skeleton, horizon, &mut work);
+        }
+        subdivide(&mut contour, skeleton, depth, &mut work);
+        Ok(Self {
+            skeleton,
+            eye,
+            contour,
+            work,
+            line_circles: vec![NONE; skeleton.line_count()],
+            point_directions: vec![NONE; skeleton.point_count()],
+            polygon: Vec::new(),
+            stats: ViewStats::default(),
+        })
     }
 
-    fn insert(&mut self, id: FragmentId) {
-        let tree = self.tree;
-        let fragment = tree.fragments[id.index()];
-        let Some(shown) = tree.shown_side(fragment.piece, self.eye) else { return };
-        let own = tree.scene.piece(fragment.piece);
+    fn finish(self) -> (ContourTree, ViewStats) {
+        let stats = ViewStats {
+            visited_nodes: self.work.visited,
+            predicates: self.work.knife.cache.predicates(),
+            ..self.stats
+        };
+        (self.contour, stats)
+    }
+
+    /// Makes `polygon` the cone of a boundary on the plane of a piece, of which the eye is shown that side.
+    fn look_at(&mut self, piece: PieceRef<'_>, sides: &[FragmentSide], shown: Side) {
         // On which side of the plane, as the plane is defined, the eye is.
-        let height = if shown == own.facing() { Sign::Positive } else { Sign::Negative };
-        let own = own.plane_id();
-        let sides = &tree.sides[fragment.range()];
+        let height = if shown == piece.facing() { Sign::Positive } else { Sign::Negative };
+        let own = piece.plane_id();
         self.polygon.clear();
         for k in 0..sides.len() {
             // Counter-clockwise around the front is clockwise on the sphere, seen from outside of it,
@@ -226,9 +185,9 @@ impl ViewBuilder<'_> {
                     (sides[k], sides[if k + 1 == sides.len() { 0 } else { k + 1 }].point)
                 }
             };
-            let (line, same_way) = tree.skeleton.representative(side.line);
+            let (line, same_way) = self.skeleton.representative(side.line);
             let forward = if side.forward == same_way { Sign::Positive } else { Sign::Negative };
-            let inside = match tree.skeleton.line(line) {
+            let inside = match self.skeleton.line(line) {
                 // (a - e) x (b - e) points inwards where the boundary runs from a to b.
                 LineDef::Edge(_) => match shown {
                     Side::Back => forward,
@@ -248,14 +207,12 @@ impl ViewBuilder<'_> {
             let along = HalfSphere::new(self.circle(line), inside);
             self.polygon.push(PolygonArc { from, along });
         }
-        self.stats.inserted += 1;
-        self.contour.insert(&tree.skeleton, &self.polygon, id, &mut self.work);
     }
 
     fn circle(&mut self, line: LineId) -> CircleId {
         let known = &mut self.line_circles[line.0 as usize];
         if *known == NONE {
-            *known = self.contour.directions.push_line(&self.tree.skeleton, line, &mut self.work.knife.cache).0;
+            *known = self.contour.directions.push_line(self.skeleton, line, &mut self.work.knife.cache).0;
         }
         CircleId(*known)
     }
@@ -263,7 +220,7 @@ impl ViewBuilder<'_> {
     fn direction(&mut self, point: PointId) -> DirectionId {
         let known = &mut self.point_directions[point.0 as usize];
         if *known == NONE {
-            *known = self.contour.directions.push_point(&self.tree.skeleton, point, &mut self.work.knife.cache).0;
+            *known = self.contour.directions.push_point(self.skeleton, point, &mut self.work.knife.cache).0;
         }
         DirectionId(*known)
     }

@@ -1,6 +1,6 @@
 //! Where one stands.
 
-use crate::bsp::SceneBsp;
+use crate::bsp::Skeleton;
 use crate::exact::{ApproxPlane, Sign, orient3d};
 use crate::scene::{PieceId, PieceRef, PolygonId, Scene, Side, SupportingPlane};
 use glam::DVec3;
@@ -120,10 +120,10 @@ impl Viewpoint {
     }
 
     /// The unit normal of the surface it is on, away from it.
-    pub(crate) fn surface_normal(&self, bsp: &SceneBsp) -> Option<DVec3> {
+    pub(crate) fn surface_normal(&self, scene: &Scene, skeleton: &Skeleton) -> Option<DVec3> {
         let (piece, _, side) = self.surface?;
-        let piece = bsp.scene().piece(piece);
-        let normal = bsp.tree.skeleton.approx_normal(piece.plane_id()).v.normalize();
+        let piece = scene.piece(piece);
+        let normal = skeleton.approx_normal(piece.plane_id()).v.normalize();
         Some(if side == piece.facing() { normal } else { -normal })
     }
 }

@@ -111,7 +111,7 @@ pub struct ContourSummary<'a> {
 impl<'a> ContourSummary<'a> {
     /// Sums up an image, without a certificate: set that if there is one. Costs one pass over its cells.
     pub fn new(image: &'a ContourImage) -> Self {
-        let scene = image.bsp().scene();
+        let scene = image.scene();
         let angles = image.solid_angles();
         let factors = image.form_factors();
         let share_of =
@@ -141,7 +141,7 @@ impl<'a> ContourSummary<'a> {
             schema: CONTOUR_SCHEMA,
             eye: image.viewpoint().eye().to_array(),
             on: image.viewpoint().surface().map(|(polygon, _)| polygon.0),
-            epsilon: image.bsp().epsilon(),
+            epsilon: image.epsilon(),
             domain: domain_row(image),
             objects: objects.collect(),
             polygons,

@@ -75,7 +75,7 @@ pub fn write_geojson(image: &ContourImage, projector: &Projector, tolerance: f64
     let frame = projector.frame();
     let frame = FrameRow { right: plain(frame.right()), up: plain(frame.up()), towards: plain(frame.towards()) };
     field(&mut out, "frame", &frame)?;
-    let scene = image.bsp().scene();
+    let scene = image.scene();
     rows(&mut out, "features", shares(image), |out, (seen, share)| {
         let (_, polygon, side) = seen;
         let named = polygon.map(|id| scene.polygon(id));

@@ -24,7 +24,7 @@ pub fn visible_groups(image: &ContourImage) -> Vec<Group> {
         }
         (polygon, corners)
     });
-    grouped(image.bsp().scene(), faces)
+    grouped(image.scene(), faces)
 }
 
 /// The fragments into which the 3D BSP cut the scene, likewise.

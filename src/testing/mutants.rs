@@ -83,7 +83,7 @@ fn nudged(evidence: &Evidence, scene: &Scene, splitter: usize, how: u8) -> Split
 /// If the verdicts differ, or if something else is claimed in some direction. Where epsilon is above 0 that may be
 /// right, so labels are compared only if it is 0.
 pub fn check_verdict(image: &ContourImage, changed: &Evidence) -> Result<bool, Defect> {
-    let scene = image.bsp().scene();
+    let scene = image.scene();
     let verdicts = [Arithmetic::Kernel, Arithmetic::Rational].map(|arithmetic| changed.check(scene, arithmetic));
     let [fast, slow] =
         verdicts.each_ref().map(|verdict| verdict.as_ref().map(|c| c.cells).map_err(verify::Defect::rule));

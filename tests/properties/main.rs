@@ -7,6 +7,7 @@ mod laws;
 mod proof;
 mod regions;
 mod tiling;
+mod ways;
 
 use glam::DVec3;
 use nusselt::testing::Mode;

@@ -23,7 +23,7 @@ proptest! {
         bytes in any::<[u8; 8]>(),
     ) {
         let image = hold(case.image())?;
-        let scene = image.bsp().scene();
+        let scene = image.scene();
         if scene.piece_count() > 0 {
             hold(check_verdict(&image, &mutated(&image.evidence(), scene, bytes)))?;
         }
@@ -34,7 +34,7 @@ proptest! {
 fn the_gallery_is_proved_by_rational_numbers() {
     for (name, case) in gallery::all() {
         let image = case.image().unwrap_or_else(|error| panic!("{name}: {error}"));
-        if let Err(defect) = image.evidence().check(image.bsp().scene(), Arithmetic::Rational) {
+        if let Err(defect) = image.evidence().check(image.scene(), Arithmetic::Rational) {
             panic!("{name}: {defect}\n{case:?}");
         }
     }

@@ -27,7 +27,7 @@ proptest! {
     #[test]
     fn cells_show_the_nearest_polygon(case in mode().prop_flat_map(case)) {
         let image = hold(case.image())?;
-        hold(check_labels(&image, &RayOracle::new(image.bsp().scene())))?;
+        hold(check_labels(&image, &RayOracle::new(image.scene())))?;
     }
 }
 

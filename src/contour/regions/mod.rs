@@ -126,7 +126,7 @@ impl ContourImage {
 
     /// A loop without the vertices that the boundary goes straight through.
     fn region_loop(&self, outlines: &mut Outlines<'_>, runs: &[Run]) -> RegionLoop {
-        let tree = &self.bsp().tree;
+        let skeleton = self.skeleton();
         let before = |k: usize| runs[if k == 0 { runs.len() - 1 } else { k - 1 }];
         // A whole great circle has no corner to start at.
         let first = (0..runs.len()).find(|&k| !outlines.go_on(before(k), runs[k])).unwrap_or(0);
@@ -140,7 +140,7 @@ impl ContourImage {
                     splitter: outlines
                         .mosaic
                         .directions
-                        .splitter(tree, outlines.circles.name(outlines.circle(run.chain))),
+                        .splitter(skeleton, outlines.circles.name(outlines.circle(run.chain))),
                     inside: inside(run),
                     turn: outlines.turn(before(k), run),
                     from: outlines.unit(outlines.start(run)),

@@ -77,7 +77,7 @@ impl<'a> Mosaic<'a> {
             arcs.extend_from_slice(image.tree.boundary(leaf));
             faces.push(Face { label, cell, part: Part::Front, start, len: arcs.len() as u32 - start });
         }
-        let skeleton = &image.bsp().tree.skeleton;
+        let skeleton = image.skeleton();
         Self { skeleton, directions: Cow::Borrowed(&image.tree.directions), faces, arcs, knife: Knife::default() }
     }
 

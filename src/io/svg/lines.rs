@@ -82,8 +82,8 @@ fn write_path(class: &str, data: &PathData, out: &mut impl Write) -> io::Result<
 /// The lines that the edges of visible polygons are part of, each by the edge that stands for it. A
 /// polygon is not seen beyond its own edge; where another one hides it, that one's edge is drawn.
 fn own_edges(image: &ContourImage) -> HashSet<(PolygonId, [VertexId; 2])> {
-    let scene = image.bsp().scene();
-    let skeleton = &image.bsp().tree.skeleton;
+    let scene = image.scene();
+    let skeleton = image.skeleton();
     let visible: HashSet<PolygonId> = image.cells().filter_map(Cell::polygon).collect();
     let edges = visible.into_iter().flat_map(|id| {
         let edges = scene.polygon(id).pieces().flat_map(PieceRef::edges);

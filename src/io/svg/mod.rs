@@ -144,7 +144,7 @@ impl<'a> Canvas<'a> {
             _ if data.is_empty() => Ok(()),
             None => writeln!(out, r#"<path id="background" fill="{colour}" stroke="{colour}" d="{data}"/>"#),
             Some(id) => {
-                let polygon = image.bsp().scene().polygon(id);
+                let polygon = image.scene().polygon(id);
                 let (object, material) = (Escaped(polygon.object_name()), Escaped(&polygon.material().name));
                 writeln!(
                     out,

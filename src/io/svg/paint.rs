@@ -23,7 +23,7 @@ impl<'a> Paint<'a> {
 
     /// The unit normal of a polygon, on the side that is seen.
     fn normal_to_eye(&self, polygon: PolygonRef<'_>) -> DVec3 {
-        let scene = self.image.bsp().scene();
+        let scene = self.image.scene();
         let normal = normal(scene, polygon);
         let first = polygon.rings().first().and_then(|ring| ring.first());
         let from_eye = first.map_or(DVec3::ZERO, |&v| scene.vertex(v) - self.image.viewpoint().eye());
@@ -32,7 +32,7 @@ impl<'a> Paint<'a> {
 
     pub(super) fn of(&self, polygon: Option<PolygonId>) -> String {
         let Some(id) = polygon else { return BACKGROUND.to_owned() };
-        let polygon = self.image.bsp().scene().polygon(id);
+        let polygon = self.image.scene().polygon(id);
         let material = polygon.material();
         let colour = if material.is_emitter() {
             let emission = DVec3::from(material.emission);

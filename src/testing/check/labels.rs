@@ -23,7 +23,7 @@ pub fn inner_directions(cell: Cell<'_>) -> impl Iterator<Item = DVec3> {
 /// # Errors
 /// The first cell that shows something else.
 pub fn check_labels(image: &ContourImage, oracle: &RayOracle) -> Result<usize, Defect> {
-    let slivers: HashSet<PieceId> = image.bsp().uncut_slivers().iter().map(|sliver| sliver.piece).collect();
+    let slivers: HashSet<PieceId> = image.uncut_slivers().iter().map(|sliver| sliver.piece).collect();
     let eye = image.viewpoint().eye();
     let mut compared = 0;
     for cell in image.cells() {

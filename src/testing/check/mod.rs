@@ -189,7 +189,7 @@ pub fn check_image(image: &ContourImage) -> Result<(), Defect> {
     image.certify()?;
     check_sums(image)?;
     check_tiling(image, &telling_directions(image))?;
-    check_labels(image, &RayOracle::new(image.bsp().scene()))?;
+    check_labels(image, &RayOracle::new(image.scene()))?;
     Ok(())
 }
 

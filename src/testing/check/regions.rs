@@ -180,11 +180,11 @@ struct Exact<'a> {
 impl<'a> Exact<'a> {
     fn new(image: &'a ContourImage) -> Self {
         let eye = image.viewpoint().eye();
-        Self { image, unit: Unit::of(image.bsp().scene().vertices().iter().copied().chain([eye])) }
+        Self { image, unit: Unit::of(image.scene().vertices().iter().copied().chain([eye])) }
     }
 
     fn inward(&self, splitter: Splitter, inside: Sign) -> Vector {
-        let normal = self.unit.splitter(self.image.bsp().scene(), self.image.viewpoint().eye(), &splitter);
+        let normal = self.unit.splitter(self.image.scene(), self.image.viewpoint().eye(), &splitter);
         primitive(if inside.is_negative() { normal.map(|x| -x) } else { normal })
     }
 

@@ -68,7 +68,7 @@ pub fn check_closed(image: &ContourImage) -> Result<(), Defect> {
 /// # Errors
 /// The first direction for which it is not so.
 pub fn check_tiling(image: &ContourImage, directions: &[DVec3]) -> Result<(), Defect> {
-    let scene = image.bsp().scene();
+    let scene = image.scene();
     let eye = image.viewpoint().eye();
     let unit = Unit::of(scene.vertices().iter().copied().chain([eye]));
     let cells: Vec<(CellId, Vec<Vector>)> = image
@@ -119,7 +119,7 @@ fn horizon(image: &ContourImage, unit: Unit) -> Option<Vector> {
         Domain::Sphere => None,
         Domain::Hemisphere(normal) => Some(free_vector(normal)),
         Domain::Above => {
-            let scene = image.bsp().scene();
+            let scene = image.scene();
             let (piece, side) = image.viewpoint().surface_piece()?;
             let piece = scene.piece(piece);
             let (normal, _) = unit.plane(&resolved(scene, piece.plane()));
@@ -135,7 +135,7 @@ pub fn telling_directions(image: &ContourImage) -> Vec<DVec3> {
     const OF_A_KIND: usize = 10;
     let eye = image.viewpoint().eye();
     let cells = image.cells().step_by(image.cell_count().div_ceil(OF_A_KIND).max(1));
-    let vertices = image.bsp().scene().vertices();
+    let vertices = image.scene().vertices();
     let stride = vertices.len().div_ceil(OF_A_KIND).max(1);
     let towards = vertices.iter().step_by(stride).map(|&v| v - eye);
     let between =

@@ -197,7 +197,7 @@ impl Contour {
         };
         let start = Instant::now();
         let evidence = image.evidence();
-        let scene = image.bsp().scene();
+        let scene = image.scene();
         let outcome = evidence.check(scene, arithmetic);
         let certify_ms = start.elapsed().as_secs_f64() * 1e3;
         let certificate = outcome.map_err(|defect| failed_image(&self.scene, scene, &evidence, &defect))?;
@@ -226,7 +226,7 @@ impl Contour {
                 let projector = projector(image, projection)?;
                 write_file(path, |out| write_geojson(image, &projector, Projector::TOLERANCE, out))
             }
-            Format::Obj => write_obj(path, &visible_groups(image), image.bsp().scene()),
+            Format::Obj => write_obj(path, &visible_groups(image), image.scene()),
         }
     }
 }

@@ -54,7 +54,7 @@ pub(super) fn in_words(image: &ContourImage, summary: &ContourSummary<'_>, timin
     let eye = vector(image.viewpoint().eye());
     let on = image.viewpoint().surface().map(|(polygon, side)| {
         let side = if side == Side::Front { "front" } else { "back" };
-        let object = image.bsp().scene().polygon(polygon).object_name();
+        let object = image.scene().polygon(polygon).object_name();
         format!(", on the {side} of polygon {polygon} ({object})")
     });
     lines.add("eye", format!("{eye}{}", on.unwrap_or_default()));

@@ -1,0 +1,258 @@
+//! Solids: parts of a scene that are proved to bound a volume, so that their inside is not seen from outside.
+//!
+//! Pieces that share edges form a component. It is a solid if
+//! - every edge has exactly two pieces, which run along it in opposite ways: the component is closed and oriented;
+//! - no two of its pieces meet but in vertices and edges that they share, by exact signs;
+//! - its volume has a sure sign, which tells the outside.
+//!
+//! Such a surface has an inside and an outside (Jordan and Brouwer), and a ray from outside of its box meets it first from
+//! outside. What is not proved is no solid: that costs time, never a wrong image.
+
+use crate::bsp::{Bounds, Skeleton};
+use crate::exact::{Sign, U, orient3d};
+use crate::scene::{PieceId, PieceRef, Scene, Side, VertexId};
+use glam::DVec3;
+
+const NONE: u32 = u32::MAX;
+/// Pairs of boxes that may be compared, for each piece of a component, before it is given up.
+const PAIRS: usize = 200;
+
+#[derive(Debug)]
+struct Solid {
+    bounds: Bounds,
+    /// The side of its pieces that faces the inside.
+    inside: Side,
+}
+
+#[derive(Debug)]
+pub(super) struct Solids {
+    solids: Vec<Solid>,
+    /// The solid that a piece is part of.
+    solid_of: Vec<u32>,
+}
+
+impl Solids {
+    pub(super) fn of(scene: &Scene, skeleton: &Skeleton, bounds: &[Bounds]) -> Self {
+        let mut found = Self { solids: Vec::new(), solid_of: vec![NONE; scene.piece_count()] };
+        for component in closed_components(scene) {
+            let surface = Surface { scene, skeleton, bounds, pieces: &component };
+            if let Some(inside) = surface.inside()
+                && surface.is_embedded()
+            {
+                let around = component.iter().fold(Bounds::EMPTY, |all, piece| all.union(bounds[piece.index()]));
+                for piece in &component {
+                    found.solid_of[piece.index()] = found.solids.len() as u32;
+                }
+                found.solids.push(Solid { bounds: around, inside });
+            }
+        }
+        found
+    }
+
+    pub(super) fn piece_count(&self) -> usize {
+        self.solid_of.iter().filter(|&&solid| solid != NONE).count()
+    }
+
+    pub(super) fn seen_from_outside(&self, eye: DVec3) -> Vec<bool> {
+        let outside = |b: &Bounds| (eye.cmplt(b.low) | eye.cmpgt(b.high)).any();
+        self.solids.iter().map(|solid| outside(&solid.bounds)).collect()
+    }
+
+    pub(super) fn is_inside(&self, piece: PieceId, shown: Side, from_outside: &[bool]) -> bool {
+        match self.solid_of[piece.index()] {
+            NONE => false,
+            solid => from_outside[solid as usize] && self.solids[solid as usize].inside == shown,
+        }
+    }
+}
+
+/// The components, joined at edges, of which every edge has two pieces that run along it in opposite ways.
+fn closed_components(scene: &Scene) -> Vec<Vec<PieceId>> {
+    // The first pieces along each edge, in either direction, and whether there are more.
+    let mut along = vec![[NONE; 2]; scene.edges().len()];
+    let mut parent: Vec<u32> = (0..scene.piece_count() as u32).collect();
+    let mut is_open = vec![false; scene.piece_count()];
+    for piece in scene.pieces() {
+        for (vertex, edge) in piece.vertices().iter().zip(piece.edges()) {
+            let way = usize::from(scene.edges()[edge.index()][0] == *vertex);
+            let slots = &mut along[edge.index()];
+            for other in slots.iter().copied().filter(|&other| other != NONE) {
+                let (a, b) = (root(&mut parent, other), root(&mut parent, piece.id().0));
+                parent[a.max(b) as usize] = a.min(b);
+            }
+            if slots[way] == NONE {
+                slots[way] = piece.id().0;
+            } else {
+                is_open[piece.id().index()] = true;
+            }
+        }
+    }
+    for slots in &along {
+        if let [piece, NONE] | [NONE, piece] = *slots
+            && piece != NONE
+        {
+            is_open[piece as usize] = true;
+        }
+    }
+    for piece in 0..scene.piece_count() as u32 {
+        if is_open[piece as usize] {
+            let root = root(&mut parent, piece);
+            is_open[root as usize] = true;
+        }
+    }
+    let mut place = vec![NONE; scene.piece_count()];
+    let mut components: Vec<Vec<PieceId>> = Vec::new();
+    for piece in 0..scene.piece_count() as u32 {
+        let root = root(&mut parent, piece) as usize;
+        if is_open[root] {
+            continue;
+        }
+        if place[root] == NONE {
+            place[root] = components.len() as u32;
+            components.push(Vec::new());
+        }
+        components[place[root] as usize].push(PieceId(piece));
+    }
+    components
+}
+
+fn root(parent: &mut [u32], mut k: u32) -> u32 {
+    while parent[k as usize] != k {
+        parent[k as usize] = parent[parent[k as usize] as usize];
+        k = parent[k as usize];
+    }
+    k
+}
+
+struct Surface<'a> {
+    scene: &'a Scene,
+    skeleton: &'a Skeleton,
+    bounds: &'a [Bounds],
+    pieces: &'a [PieceId],
+}
+
+impl Surface<'_> {
+    /// The side that faces the inside, by the sign of the volume, if rounding leaves no doubt.
+    fn inside(&self) -> Option<Side> {
+        let from = self.scene.piece(*self.pieces.first()?).points().next()?;
+        let (mut volume, mut size, mut terms) = (0.0, 0.0, 0.0);
+        for &piece in self.pieces {
+            let points: Vec<DVec3> = self.scene.piece(piece).points().map(|p| p - from).collect();
+            for k in 2..points.len() {
+                let [a, b, c] = [points[0], points[k - 1], points[k]];
+                volume += a.dot(b.cross(c));
+                size += a.abs().dot(cross_of_sizes(b.abs(), c.abs()));
+                terms += 1.0;
+            }
+        }
+        // A difference is off by u relatively, so each of the products of a term by (1 + u)^3 and the roundings of the
+        // products and sums of the term, 5 more; adding the terms up by as many u as there are. Underflow is far below.
+        let bound = (terms + 16.0) * 2.0 * U * size + 1e-290;
+        match volume {
+            v if !bound.is_finite() || v.is_nan() => None,
+            v if v > bound => Some(Side::Back),
+            v if v < -bound => Some(Side::Front),
+            _ => None,
+        }
+    }
+
+    /// True if no two pieces meet but where they share vertices.
+    fn is_embedded(&self) -> bool {
+        let mut by_x: Vec<PieceId> = self.pieces.to_vec();
+        let low = |piece: &PieceId| self.bounds[piece.index()].low.x;
+        by_x.sort_by(|a, b| low(a).total_cmp(&low(b)).then(a.cmp(b)));
+        let mut pairs = PAIRS * by_x.len();
+        for (k, &first) in by_x.iter().enumerate() {
+            let reach = &self.bounds[first.index()];
+            for &second in by_x[k + 1..].iter().take_while(|piece| low(piece) <= reach.high.x) {
+                if pairs == 0 {
+                    return false;
+                }
+                pairs -= 1;
+                let other = &self.bounds[second.index()];
+                let apart = (other.low.cmpgt(reach.high) | other.high.cmplt(reach.low)).any();
+                if !apart && !self.are_disjoint(self.scene.piece(first), self.scene.piece(second)) {
+                    return false;
+                }
+            }
+        }
+        true
+    }
+
+    /// True if two pieces certainly do not meet but in one vertex or one edge that they share.
+    fn are_disjoint(&self, a: PieceRef<'_>, b: PieceRef<'_>) -> bool {
+        let shared = a.vertices().iter().filter(|v| b.vertices().contains(v)).count();
+        let shares_edge = a.edges().iter().any(|edge| b.edges().contains(edge));
+        if shared > 2 || (shared == 2 && !shares_edge) {
+            return false;
+        }
+        if a.plane_id() == b.plane_id() {
+            return self.is_beside_in_plane(a, b) || self.is_beside_in_plane(b, a);
+        }
+        self.is_beside(a, b) || self.is_beside(b, a) || !(self.may_pierce(a, b) || self.may_pierce(b, a))
+    }
+
+    /// True if an edge of `a` has all of `b`, in the same plane, on its other side, but for shared vertices.
+    fn is_beside_in_plane(&self, a: PieceRef<'_>, b: PieceRef<'_>) -> bool {
+        let normal = self.skeleton.approx_normal(a.plane_id()).v;
+        // Any point off the plane will do: if this one were on it, all sides would be 0.
+        let off = a.points().next().map_or(DVec3::ZERO, |p| p + normal * p.abs().max_element().max(1e-100));
+        let corners = a.vertices();
+        let separates = |k: usize| {
+            let [c, d] = [corners[k], corners[(k + 1) % corners.len()]].map(|v| self.scene.vertex(v));
+            let side = |v: &VertexId| orient3d(c, d, off, self.scene.vertex(*v));
+            let own = corners.iter().map(side).find(|side| !side.is_zero());
+            let mut others = b.vertices().iter().filter(|v| !corners.contains(v)).map(side);
+            own.is_some_and(|own| others.all(|side| side == -own))
+        };
+        (0..corners.len()).any(separates)
+    }
+
+    /// True if all of `b` is on one side of the plane of `a`, and touches it at most in shared vertices.
+    fn is_beside(&self, a: PieceRef<'_>, b: PieceRef<'_>) -> bool {
+        let (mut above, mut below) = (false, false);
+        for vertex in b.vertices() {
+            if a.vertices().contains(vertex) {
+                continue;
+            }
+            match self.skeleton.vertex_side(a.plane_id(), *vertex) {
+                Sign::Positive => above = true,
+                Sign::Negative => below = true,
+                Sign::Zero => return false,
+            }
+        }
+        above != below
+    }
+
+    /// False if certainly no edge of `a` meets `b` but in a shared vertex.
+    fn may_pierce(&self, a: PieceRef<'_>, b: PieceRef<'_>) -> bool {
+        let corners = a.vertices();
+        (0..corners.len()).any(|k| self.edge_may_meet([corners[k], corners[(k + 1) % corners.len()]], b))
+    }
+
+    fn edge_may_meet(&self, [p, q]: [VertexId; 2], b: PieceRef<'_>) -> bool {
+        let corners = b.vertices();
+        let [at_p, at_q] = [p, q].map(|v| (self.skeleton.vertex_side(b.plane_id(), v), corners.contains(&v)));
+        match (at_p, at_q) {
+            // From a vertex of both, away from the plane.
+            ((_, true), (side, false)) | ((side, false), (_, true)) => side.is_zero(),
+            ((_, true), (_, true)) => false,
+            ((one, _), (other, _)) if one == other => one.is_zero(),
+            ((Sign::Zero, _), _) | (_, (Sign::Zero, _)) => true,
+            _ => {
+                // The line through p and q passes all sides of b on the same side: within it, or at its edge.
+                let mut turns = (0..corners.len()).map(|k| {
+                    let [c, d] = [corners[k], corners[(k + 1) % corners.len()]];
+                    orient3d(self.scene.vertex(p), self.scene.vertex(q), self.scene.vertex(c), self.scene.vertex(d))
+                });
+                let mut first = None;
+                turns.all(|turn| turn.is_zero() || *first.get_or_insert(turn) == turn)
+            }
+        }
+    }
+}
+
+/// A bound on the components of a cross product, from the sizes of the components of its factors.
+fn cross_of_sizes(a: DVec3, b: DVec3) -> DVec3 {
+    DVec3::new(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x)
+}

@@ -1,0 +1,234 @@
+//! The second way: whole pieces roughly from near to far, from a hierarchy of boxes; where a piece meets what
+//! fills a cell already, the planes of the two decide which is nearer.
+
+use super::super::directions::{CircleId, Directions};
+use super::super::domain::Domain;
+use super::super::image::{ContourImage, Source};
+use super::super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
+use super::super::tree::{Filler, Link, Verdict};
+use super::super::viewpoint::Viewpoint;
+use super::{Sight, ViewError, ViewOptions};
+use crate::bsp::Bounds;
+use crate::bvh::{Content, Hierarchy, SceneBvh};
+use crate::exact::{SeenBox, Sign, U};
+use crate::scene::{PieceId, PieceRef, PlaneId, Side};
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+impl SceneBvh {
+    /// The contour image from a viewpoint: the same labelled subdivision as [`SceneBsp::view`](crate::bsp::SceneBsp::view) gives, cut into
+    /// other cells.
+    ///
+    /// # Errors
+    /// If the eye or a normal is not finite or zero, or if the domain does not suit the viewpoint.
+    pub fn view(&self, viewpoint: &Viewpoint, domain: &Domain) -> Result<ContourImage, ViewError> {
+        self.view_with(viewpoint, domain, &ViewOptions::default())
+    }
+
+    /// The same with options.
+    ///
+    /// # Errors
+    /// As [`SceneBvh::view`]; also if the quadtree is to have too many levels, or if there are too many
+    /// cells.
+    pub fn view_with(
+        &self,
+        viewpoint: &Viewpoint,
+        domain: &Domain,
+        options: &ViewOptions,
+    ) -> Result<ContourImage, ViewError> {
+        let hierarchy = &*self.hierarchy;
+        let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options)?;
+        let from_outside = hierarchy.solids_seen_from_outside(sight.eye);
+        let mut walk = Walk { hierarchy, sight, from_outside, creases: FxHashMap::default() };
+        walk.run(options.max_cells)?;
+        let (contour, stats) = walk.sight.finish();
+        Ok(ContourImage::new(Source::Bvh(self.clone()), *viewpoint, *domain, contour, stats))
+    }
+}
+
+struct Walk<'a> {
+    hierarchy: &'a Hierarchy,
+    sight: Sight<'a>,
+    from_outside: Vec<bool>,
+    creases: FxHashMap<[PlaneId; 2], CircleId>,
+}
+
+impl Walk<'_> {
+    fn run(&mut self, max_cells: usize) -> Result<(), ViewError> {
+        let hierarchy = self.hierarchy;
+        let eye = self.sight.eye;
+        let root = self.sight.contour.root;
+        let near = |node: u32| distance_to_box(eye, &hierarchy.nodes[node as usize].bounds);
+        let mut stack = if hierarchy.nodes.is_empty() { Vec::new() } else { vec![(near(0), 0, root)] };
+        while let Some((distance, node, top)) = stack.pop() {
+            if self.sight.contour.leaves.len() > max_cells {
+                return Err(ViewError::TooManyCells { limit: max_cells });
+            }
+            let node = &hierarchy.nodes[node as usize];
+            let seen = SeenBox::new(eye, node.bounds.low, node.bounds.high);
+            let top = self.sight.contour.around(top, &seen);
+            if self.sight.contour.hides(top, &seen, distance, &mut self.sight.work) {
+                self.sight.stats.skipped_subtrees += 1;
+                continue;
+            }
+            match &node.content {
+                Content::Boxes(boxes) => {
+                    let [first, second] = boxes.map(|k| (near(k), k, top));
+                    stack.extend(if first.0 <= second.0 { [second, first] } else { [first, second] });
+                }
+                Content::Pieces(range) => {
+                    for &piece in &hierarchy.order[range.start as usize..range.end as usize] {
+                        self.insert(piece, top);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn insert(&mut self, id: PieceId, top: Link) {
+        let Self { hierarchy, sight, from_outside, creases } = self;
+        let eye = sight.eye;
+        let piece = hierarchy.scene.piece(id);
+        let Some(shown) = hierarchy.skeleton.shown_side(piece, eye) else { return };
+        if hierarchy.is_inside(id, shown, from_outside) {
+            return;
+        }
+        sight.look_at(piece, hierarchy.sides(id), shown);
+        sight.stats.inserted += 1;
+        let near = distance_to_box(eye, &hierarchy.bounds[id.index()]);
+        let far = piece.points().fold(0.0, |far, p| f64::max(far, distance_bound(eye, p)));
+        let filler = Filler { piece: id, near, far };
+        let mut rivals = Rivals { hierarchy, eye, piece, shown, last: None, creases };
+        let Sight { contour, work, polygon, .. } = sight;
+        let judge = |directions: &mut Directions, knife: &mut Knife, old: PieceId, part: &[PolygonArc]| {
+            rivals.judge(directions, knife, old, part)
+        };
+        contour.insert(&hierarchy.skeleton, top, polygon, &filler, judge, work);
+    }
+}
+
+/// A lower bound on the distance to a box.
+fn distance_to_box(eye: DVec3, bounds: &Bounds) -> f64 {
+    let gap = (bounds.low - eye).max(eye - bounds.high).max(DVec3::ZERO);
+    // Each step is off by u relatively, and squares may underflow by 2^-1074 each.
+    let length = gap.length() * (1.0 - 8.0 * U) - LEAST;
+    if length.is_finite() { length.max(0.0) } else { 0.0 }
+}
+
+/// An upper bound on the distance to a point.
+fn distance_bound(eye: DVec3, p: DVec3) -> f64 {
+    (p - eye).length() * (1.0 + 8.0 * U) + LEAST
+}
+
+/// More than the square root of what three squares can lose by underflow.
+const LEAST: f64 = 1e-160;
+
+/// How the whole of a piece lies to another one, seen from the eye.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Order {
+    InFront,
+    Behind,
+    /// Each has parts before the other's plane and behind it.
+    Mixed,
+}
+
+/// A piece that is put in, against those that are there.
+struct Rivals<'a> {
+    hierarchy: &'a Hierarchy,
+    eye: DVec3,
+    piece: PieceRef<'a>,
+    shown: Side,
+    last: Option<(PieceId, Order)>,
+    creases: &'a mut FxHashMap<[PlaneId; 2], CircleId>,
+}
+
+impl Rivals<'_> {
+    fn judge(
+        &mut self,
+        directions: &mut Directions,
+        knife: &mut Knife,
+        old: PieceId,
+        part: &[PolygonArc],
+    ) -> Verdict {
+        let order = match self.last {
+            Some((last, order)) if last == old => order,
+            _ => self.order(old),
+        };
+        self.last = Some((old, order));
+        match order {
+            Order::InFront => Verdict::InFront,
+            Order::Behind => Verdict::Behind,
+            Order::Mixed => self.judge_by_crease(directions, knife, old, part),
+        }
+    }
+
+    /// By the planes of the two: what has no part before the other's plane is behind it wherever both are seen.
+    fn order(&self, old: PieceId) -> Order {
+        let skeleton = &self.hierarchy.skeleton;
+        let old = self.hierarchy.scene.piece(old);
+        let new = self.piece;
+        // Whether a piece has corners before the plane of another one, and beyond it.
+        let about = |piece: PieceRef<'_>, other: PieceRef<'_>| {
+            let eye = self.height(other);
+            let (mut before, mut beyond) = (false, false);
+            for &vertex in piece.vertices() {
+                let side = skeleton.vertex_side(other.plane_id(), vertex) * eye;
+                before |= side.is_positive();
+                beyond |= side.is_negative();
+            }
+            (before, beyond)
+        };
+        if new.plane_id() != old.plane_id() {
+            match about(new, old) {
+                (true, false) => return Order::InFront,
+                (false, true) => return Order::Behind,
+                (true, true) => match about(old, new) {
+                    (true, false) => return Order::Behind,
+                    (false, true) => return Order::InFront,
+                    // The old one in the plane of the new one puts that in its own.
+                    _ => return Order::Mixed,
+                },
+                (false, false) => {}
+            }
+        }
+        // In one plane: fronts hide backs, then the lower number hides the higher.
+        let shown = if self.height(old) == Sign::Positive { old.facing() } else { old.facing().opposite() };
+        let rank = |shown: Side, piece: PieceRef<'_>| (shown == Side::Back, piece.polygon(), piece.id());
+        if rank(self.shown, new) < rank(shown, old) { Order::InFront } else { Order::Behind }
+    }
+
+    /// On which side of the plane of a piece the eye is.
+    fn height(&self, piece: PieceRef<'_>) -> Sign {
+        self.hierarchy.skeleton.position_side(piece.plane_id(), self.eye)
+    }
+
+    /// By the great circle through the line where the planes meet.
+    ///
+    /// With both planes turned so that the eye's height is above 0, the new piece is nearer where
+    /// `h_old N_new - h_new N_old` is negative: depth along `d` is `-h / (N . d)`.
+    fn judge_by_crease(
+        &mut self,
+        directions: &mut Directions,
+        knife: &mut Knife,
+        old: PieceId,
+        part: &[PolygonArc],
+    ) -> Verdict {
+        let skeleton = &self.hierarchy.skeleton;
+        let old = self.hierarchy.scene.piece(old);
+        let planes = [self.piece.plane_id(), old.plane_id()];
+        let planes = [planes[0].min(planes[1]), planes[0].max(planes[1])];
+        let circle = *self
+            .creases
+            .entry(planes)
+            .or_insert_with(|| directions.push_crease(skeleton, planes, &mut knife.cache));
+        // The splitter is `h_2 N_1 - h_1 N_2`.
+        let turned = self.height(self.piece) * self.height(old);
+        let nearer = if planes[0] == self.piece.plane_id() { -turned } else { turned };
+        match knife.classify(skeleton, directions, part, circle) {
+            Sides { negative: true, positive: true } => Verdict::InFrontWithin(HalfSphere::new(circle, nearer)),
+            Sides { positive, .. } if positive == nearer.is_positive() => Verdict::InFront,
+            _ => Verdict::Behind,
+        }
+    }
+}

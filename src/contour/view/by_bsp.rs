@@ -1,0 +1,81 @@
+//! The report's way: fragments from the 3D BSP, exactly front to back. What is filled is final.
+
+use super::super::domain::Domain;
+use super::super::image::{ContourImage, Source};
+use super::super::tree::{Filler, Verdict};
+use super::super::viewpoint::Viewpoint;
+use super::{Sight, ViewError, ViewOptions};
+use crate::bsp::{FragmentId, SceneBsp, Step, Tree};
+use crate::exact::SeenBox;
+
+impl SceneBsp {
+    /// The contour image from a viewpoint.
+    ///
+    /// # Errors
+    /// If the eye or a normal is not finite or zero, or if the domain does not suit the viewpoint.
+    pub fn view(&self, viewpoint: &Viewpoint, domain: &Domain) -> Result<ContourImage, ViewError> {
+        self.view_with(viewpoint, domain, &ViewOptions::default())
+    }
+
+    /// The same with options.
+    ///
+    /// # Errors
+    /// As [`SceneBsp::view`]; also if the quadtree is to have too many levels, or if there are too many
+    /// cells.
+    pub fn view_with(
+        &self,
+        viewpoint: &Viewpoint,
+        domain: &Domain,
+        options: &ViewOptions,
+    ) -> Result<ContourImage, ViewError> {
+        let tree = &*self.tree;
+        let mut sight = Sight::new(&tree.scene, &tree.skeleton, viewpoint, domain, options)?;
+        walk(&mut sight, tree, options.max_cells)?;
+        let (contour, stats) = sight.finish();
+        Ok(ContourImage::new(Source::Bsp(self.clone()), *viewpoint, *domain, contour, stats))
+    }
+}
+
+fn walk(sight: &mut Sight<'_>, tree: &Tree, max_cells: usize) -> Result<(), ViewError> {
+    let mut stack = if tree.nodes.is_empty() { Vec::new() } else { vec![Step::Subtree(0)] };
+    let mut fragments = Vec::new();
+    while let Some(step) = stack.pop() {
+        if sight.contour.leaves.len() > max_cells {
+            return Err(ViewError::TooManyCells { limit: max_cells });
+        }
+        // Leaves are open or final.
+        if sight.contour.far() == 0.0 {
+            break;
+        }
+        match step {
+            Step::Subtree(node) => {
+                let bounds = &tree.nodes[node as usize].bounds;
+                let seen = SeenBox::new(sight.eye, bounds.low, bounds.high);
+                if sight.contour.hides(sight.contour.root, &seen, 0.0, &mut sight.work) {
+                    sight.stats.skipped_subtrees += 1;
+                } else {
+                    stack.extend(tree.steps(node, sight.eye).into_iter().rev().flatten());
+                }
+            }
+            Step::Fragments(node) => {
+                fragments.clear();
+                tree.nearest_first(&tree.nodes[node as usize], sight.eye, &mut fragments);
+                for &id in &fragments {
+                    insert(sight, tree, id);
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn insert(sight: &mut Sight<'_>, tree: &Tree, id: FragmentId) {
+    let fragment = tree.fragments[id.index()];
+    let piece = tree.scene.piece(fragment.piece);
+    let Some(shown) = tree.skeleton.shown_side(piece, sight.eye) else { return };
+    sight.look_at(piece, &tree.sides[fragment.range()], shown);
+    sight.stats.inserted += 1;
+    let filler = Filler { piece: fragment.piece, near: 0.0, far: 0.0 };
+    let Sight { contour, work, polygon, .. } = sight;
+    contour.insert(&tree.skeleton, contour.root, polygon, &filler, |_, _, _, _| Verdict::Behind, work);
+}
