@@ -127,5 +127,4 @@ impl Tree {
         }
         out.append(&mut backs);
     }
-
 }

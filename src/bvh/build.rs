@@ -45,12 +45,18 @@ fn middle(bounds: &Bounds) -> DVec3 {
 
 /// Puts the pieces of the one half first; gives how many they are. Neither half is empty.
 fn halve(bounds: &[Bounds], part: &mut [u32]) -> usize {
-    let (low, high) = part.iter().map(|&k| middle(&bounds[k as usize])).fold(
-        (DVec3::INFINITY, DVec3::NEG_INFINITY),
-        |(low, high), p| (low.min(p), high.max(p)),
-    );
+    let (low, high) = part
+        .iter()
+        .map(|&k| middle(&bounds[k as usize]))
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| (low.min(p), high.max(p)));
     let size = high - low;
-    let axis = if size.x >= size.y && size.x >= size.z { 0 } else if size.y >= size.z { 1 } else { 2 };
+    let axis = if size.x >= size.y && size.x >= size.z {
+        0
+    } else if size.y >= size.z {
+        1
+    } else {
+        2
+    };
     let bin = |k: u32| {
         let place = (middle(&bounds[k as usize])[axis] - low[axis]) / size[axis] * BINS as f64;
         (place as usize).min(BINS - 1)

@@ -51,7 +51,7 @@ pub struct SceneBvh {
 
 impl SceneBvh {
     /// Builds the hierarchy of a scene: about `n log n` time for `n` polygons, by the surface-area heuristic
-    /// (MacDonald and Booth 1990) in bins (Wald 2007).
+    /// (Goldsmith and Salmon 1987) in bins (Wald 2007).
     #[must_use]
     pub fn build(scene: &Scene) -> Self {
         let skeleton = Skeleton::new(scene);

@@ -12,10 +12,11 @@ use crate::bsp::{Bounds, Skeleton};
 use crate::exact::{Sign, U, orient3d};
 use crate::scene::{PieceId, PieceRef, Scene, Side, VertexId};
 use glam::DVec3;
+use std::cmp::Ordering;
 
 const NONE: u32 = u32::MAX;
 /// Pairs of boxes that may be compared, for each piece of a component, before it is given up.
-const PAIRS: usize = 200;
+const PAIRS: usize = 50;
 
 #[derive(Debug)]
 struct Solid {
@@ -186,42 +187,58 @@ impl Surface<'_> {
         if shared > 2 || (shared == 2 && !shares_edge) {
             return false;
         }
-        if a.plane_id() == b.plane_id() {
-            return self.is_beside_in_plane(a, b) || self.is_beside_in_plane(b, a);
-        }
         self.is_beside(a, b) || self.is_beside(b, a) || !(self.may_pierce(a, b) || self.may_pierce(b, a))
     }
 
-    /// True if an edge of `a` has all of `b`, in the same plane, on its other side, but for shared vertices.
-    fn is_beside_in_plane(&self, a: PieceRef<'_>, b: PieceRef<'_>) -> bool {
-        let normal = self.skeleton.approx_normal(a.plane_id()).v;
-        // Any point off the plane will do: if this one were on it, all sides would be 0.
-        let off = a.points().next().map_or(DVec3::ZERO, |p| p + normal * p.abs().max_element().max(1e-100));
-        let corners = a.vertices();
-        let separates = |k: usize| {
-            let [c, d] = [corners[k], corners[(k + 1) % corners.len()]].map(|v| self.scene.vertex(v));
-            let side = |v: &VertexId| orient3d(c, d, off, self.scene.vertex(*v));
-            let own = corners.iter().map(side).find(|side| !side.is_zero());
-            let mut others = b.vertices().iter().filter(|v| !corners.contains(v)).map(side);
-            own.is_some_and(|own| others.all(|side| side == -own))
-        };
-        (0..corners.len()).any(separates)
-    }
-
-    /// True if all of `b` is on one side of the plane of `a`, and touches it at most in shared vertices.
+    /// True if all of `b` is on one side of the plane of `a` or touches it, and what of it touches it meets `a` only in what they share.
     fn is_beside(&self, a: PieceRef<'_>, b: PieceRef<'_>) -> bool {
-        let (mut above, mut below) = (false, false);
-        for vertex in b.vertices() {
-            if a.vertices().contains(vertex) {
-                continue;
-            }
-            match self.skeleton.vertex_side(a.plane_id(), *vertex) {
+        let sides = b.vertices().iter().map(|&vertex| self.skeleton.vertex_side(a.plane_id(), vertex));
+        let (mut above, mut below, mut touching) = (false, false, Vec::new());
+        for (&vertex, side) in b.vertices().iter().zip(sides) {
+            match side {
                 Sign::Positive => above = true,
                 Sign::Negative => below = true,
-                Sign::Zero => return false,
+                Sign::Zero => touching.push(vertex),
             }
         }
-        above != below
+        if above && below {
+            return false;
+        }
+        let is_shared = |v: &VertexId| a.vertices().contains(v);
+        let is_flat = touching.len() == b.vertices().len();
+        if !is_flat && touching.iter().all(is_shared) {
+            return true;
+        }
+        // Any point off the plane will do: if this one were on it, all sides would be 0.
+        let normal = self.skeleton.approx_normal(a.plane_id()).v;
+        let off = a.points().next().map_or(DVec3::ZERO, |p| p + normal * p.abs().max_element().max(1e-100));
+        self.is_beside_edge(a.vertices(), &touching, off) || self.is_beside_edge(&touching, a.vertices(), off)
+    }
+
+    /// True if some side of a convex ring has all other points, in the same plane, on its other side, where they meet the ring at
+    /// most in shared vertices. `off` is a point off the plane.
+    fn is_beside_edge(&self, ring: &[VertexId], others: &[VertexId], off: DVec3) -> bool {
+        let separates = |k: usize| {
+            let [c, d] = [ring[k], ring[(k + 1) % ring.len()]].map(|v| self.scene.vertex(v));
+            let side = |v: &VertexId| orient3d(c, d, off, self.scene.vertex(*v));
+            let own = ring.iter().map(side).find(|side| !side.is_zero());
+            let beyond = others.iter().map(side).find(|side| !side.is_zero());
+            let is_apart =
+                others.iter().map(side).all(|side| side.is_zero() || (Some(side) == beyond && Some(side) != own));
+            is_apart && beyond.is_some() && {
+                let on_line = |v: &&VertexId| side(v).is_zero();
+                let shared = others.iter().filter(on_line).all(|v| ring.contains(v));
+                // Points on one line have the order of any coordinate that differs.
+                let axis = (0..3).find(|&axis| c[axis].partial_cmp(&d[axis]) != Some(Ordering::Equal)).unwrap_or(0);
+                let reach = |points: &[VertexId]| {
+                    let on_line = points.iter().filter(on_line).map(|&v| self.scene.vertex(v)[axis]);
+                    on_line.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+                };
+                let (mine, theirs) = (reach(ring), reach(others));
+                shared || theirs.1 <= mine.0 || theirs.0 >= mine.1
+            }
+        };
+        (0..ring.len()).any(separates)
     }
 
     /// False if certainly no edge of `a` meets `b` but in a shared vertex.
@@ -255,4 +272,85 @@ impl Surface<'_> {
 /// A bound on the components of a cross product, from the sizes of the components of its factors.
 fn cross_of_sizes(a: DVec3, b: DVec3) -> DVec3 {
     DVec3::new(a.y * b.z + a.z * b.y, a.z * b.x + a.x * b.z, a.x * b.y + a.y * b.x)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::SceneBvh;
+    use crate::scene::{Material, Scene};
+    use glam::DVec3;
+
+    /// A box of quads with the fronts outside, its corners at 0 or 1 times `size` from `low`.
+    fn cuboid(low: [f64; 3], size: [f64; 3]) -> (Vec<[f64; 3]>, Vec<Vec<usize>>) {
+        let corner = |k: usize| [0, 1, 2].map(|axis| low[axis] + f64::from((k >> axis & 1) as u8) * size[axis]);
+        let faces: [[usize; 4]; 6] =
+            [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+        ((0..8).map(corner).collect(), faces.map(|face| face.to_vec()).to_vec())
+    }
+
+    fn built(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> Scene {
+        Scene::builder().mesh(vertices, faces, Material::new("grey")).build().expect("the mesh is a scene")
+    }
+
+    #[test]
+    fn a_box_is_a_solid_and_only_its_inside_is_left_out() {
+        let (vertices, faces) = cuboid([1.0, 2.0, 3.0], [2.0, 1.0, 4.0]);
+        let reversed: Vec<Vec<usize>> = faces.iter().map(|face| face.iter().rev().copied().collect()).collect();
+        for faces in [faces, reversed] {
+            let bvh = SceneBvh::build(&built(&vertices, &faces));
+            assert_eq!(bvh.solid_pieces(), 6);
+            let hierarchy = &bvh.hierarchy;
+            for eye in [DVec3::new(-3.0, 2.5, 4.0), DVec3::new(9.0, -8.0, 5.0), DVec3::new(2.0, 2.5, 5.0)] {
+                let from_outside = hierarchy.solids_seen_from_outside(eye);
+                let left_out = bvh.scene().pieces().filter(|piece| {
+                    let shown = hierarchy.skeleton.shown_side(*piece, eye).expect("the eye is in no plane");
+                    hierarchy.is_inside(piece.id(), shown, &from_outside)
+                });
+                // From outside those that do not show their outside; from inside none.
+                let is_outside = |k: usize, value: f64| eye[k] < value;
+                let seen =
+                    (0..3).map(|k| usize::from(is_outside(k, [1.0, 2.0, 3.0][k]) || eye[k] > [3.0, 3.0, 7.0][k]));
+                let expected = match seen.sum() {
+                    0 => 0,
+                    seen => 6 - seen,
+                };
+                assert_eq!(left_out.count(), expected, "from {eye}");
+            }
+        }
+    }
+
+    #[test]
+    fn open_or_crossing_or_touching_surfaces_are_no_solids() {
+        let (vertices, faces) = cuboid([0.0; 3], [1.0; 3]);
+        assert_eq!(SceneBvh::build(&built(&vertices, &faces[1..])).solid_pieces(), 0, "open");
+        let mut turned = faces.clone();
+        turned[0].reverse();
+        assert_eq!(SceneBvh::build(&built(&vertices, &turned)).solid_pieces(), 0, "not oriented");
+        // A corner is drawn through the opposite face: all triangles, as quads would not be planar.
+        let halves = |k: &[usize]| [vec![k[0], k[1], k[2]], vec![k[0], k[2], k[3]]];
+        let triangles: Vec<Vec<usize>> = faces.iter().flat_map(|face| halves(face)).collect();
+        assert_eq!(SceneBvh::build(&built(&vertices, &triangles)).solid_pieces(), 12, "triangles");
+        // Two cones over the same six edges: beyond the other apex they do not meet, on and between them they do.
+        for (corner, solid) in [
+            ([2.0, 2.0, 2.0], 12),
+            ([0.5, 0.5, 1.0], 0),
+            ([0.5, 0.25, 1.5], 0),
+            ([0.5, 0.25, 0.5], 12),
+            ([1.5, 0.5, 0.5], 0),
+        ] {
+            let mut moved = vertices.clone();
+            moved[0] = corner;
+            let pieces = SceneBvh::build(&built(&moved, &triangles)).solid_pieces();
+            assert_eq!(pieces, solid, "corner 0 at {corner:?}");
+        }
+    }
+
+    #[test]
+    fn solids_that_pass_through_each_other_are_solids_each() {
+        let (mut vertices, mut faces) = cuboid([0.0; 3], [2.0; 3]);
+        let (more, of_these) = cuboid([1.0; 3], [2.0; 3]);
+        vertices.extend(more);
+        faces.extend(of_these.iter().map(|face| face.iter().map(|k| k + 8).collect()));
+        assert_eq!(SceneBvh::build(&built(&vertices, &faces)).solid_pieces(), 12);
+    }
 }

@@ -123,7 +123,12 @@ impl Directions {
     }
 
     /// The great circle through the line where two planes meet, in the order of their numbers.
-    pub(crate) fn push_crease(&mut self, skeleton: &Skeleton, planes: [PlaneId; 2], cache: &mut ExactCache) -> CircleId {
+    pub(crate) fn push_crease(
+        &mut self,
+        skeleton: &Skeleton,
+        planes: [PlaneId; 2],
+        cache: &mut ExactCache,
+    ) -> CircleId {
         self.push_circle(skeleton, CircleDef::Crease(planes), skeleton.approx_crease_normal(self.eye, planes), cache)
     }
 

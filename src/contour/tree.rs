@@ -186,7 +186,7 @@ impl ContourTree {
         while let Some(node) = above {
             let TreeNode { negative, positive, parent, far, .. } = self.nodes[node as usize];
             let most = self.link_far(negative).max(self.link_far(positive));
-            if most == far {
+            if most.total_cmp(&far).is_eq() {
                 return;
             }
             self.nodes[node as usize].far = most;
@@ -242,7 +242,13 @@ impl ContourTree {
         // The leaf itself becomes the negative child, so that no leaf is ever out of the tree.
         let positive = self.push_leaf(&work.positive, Some(node));
         self.leaves[leaf as usize] = self.open_leaf(&work.negative, Some(node));
-        self.nodes.push(TreeNode { circle: half.circle(), negative: Link::Leaf(leaf), positive, parent, far: f64::INFINITY });
+        self.nodes.push(TreeNode {
+            circle: half.circle(),
+            negative: Link::Leaf(leaf),
+            positive,
+            parent,
+            far: f64::INFINITY,
+        });
         let Link::Leaf(positive) = positive else { return [None, None] };
         if half.inside().is_positive() { [Some(positive), Some(leaf)] } else { [Some(leaf), Some(positive)] }
     }
@@ -350,14 +356,7 @@ impl ContourTree {
     ///
     /// Every side of the polygon that is not on the leaf's boundary becomes a node; what lies outside
     /// of it stays as it is.
-    fn fill(
-        &mut self,
-        skeleton: &Skeleton,
-        leaf: u32,
-        polygon: Range<usize>,
-        filler: &Filler,
-        work: &mut Workspace,
-    ) {
+    fn fill(&mut self, skeleton: &Skeleton, leaf: u32, polygon: Range<usize>, filler: &Filler, work: &mut Workspace) {
         let Leaf { state, far, start, len, mut parent } = self.leaves[leaf as usize];
         let mut here = Link::Leaf(leaf);
         work.region.clear();

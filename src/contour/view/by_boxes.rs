@@ -144,13 +144,7 @@ struct Rivals<'a> {
 }
 
 impl Rivals<'_> {
-    fn judge(
-        &mut self,
-        directions: &mut Directions,
-        knife: &mut Knife,
-        old: PieceId,
-        part: &[PolygonArc],
-    ) -> Verdict {
+    fn judge(&mut self, directions: &mut Directions, knife: &mut Knife, old: PieceId, part: &[PolygonArc]) -> Verdict {
         let order = match self.last {
             Some((last, order)) if last == old => order,
             _ => self.order(old),
@@ -218,10 +212,8 @@ impl Rivals<'_> {
         let old = self.hierarchy.scene.piece(old);
         let planes = [self.piece.plane_id(), old.plane_id()];
         let planes = [planes[0].min(planes[1]), planes[0].max(planes[1])];
-        let circle = *self
-            .creases
-            .entry(planes)
-            .or_insert_with(|| directions.push_crease(skeleton, planes, &mut knife.cache));
+        let circle =
+            *self.creases.entry(planes).or_insert_with(|| directions.push_crease(skeleton, planes, &mut knife.cache));
         // The splitter is `h_2 N_1 - h_1 N_2`.
         let turned = self.height(self.piece) * self.height(old);
         let nearer = if planes[0] == self.piece.plane_id() { -turned } else { turned };
