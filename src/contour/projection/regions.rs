@@ -5,6 +5,7 @@
 //! same points on it, bit by bit. Curves are broken where they cross the lines of a grid that all share: between the
 //! borders of a square, curves that do not cross have chords that do not cross.
 
+use super::crossings::crossing;
 use super::{Projection, Projector, STEREOGRAPHIC_REACH};
 use crate::contour::ContourImage;
 use crate::contour::regions::mosaic::{Face, Mosaic, Part};
@@ -26,7 +27,9 @@ struct Line {
 
 /// Longitudes further from 0 than this are near a panorama's seam.
 const BESIDE: f64 = 0.75 * PI;
-/// No picture is finer.
+/// So many points, and as many as there are, may be added to keep curves apart.
+const ADDED: usize = 1000;
+/// No picture is finer, but where that keeps curves apart.
 const FINEST: f64 = 1e-9;
 
 /// A connected part of the picture of what is seen of one side of a polygon, or of the background: a polygon with
@@ -58,9 +61,9 @@ impl Projector {
     /// is.
     ///
     /// Curves are flattened to within about `tolerance`, in the picture's units (less than 1e-9, or NaN, counts as 1e-9). Regions
-    /// that share a part of their boundary share its points exactly, so that there are neither gaps nor overlaps, with
-    /// one exception: where a corner is nearer to a curve than the tolerance, a straight piece of the curve may pass it on its
-    /// other side. Regions and holes that rounding leaves fewer than three different points are left out.
+    /// that share a part of their boundary share its points exactly, and where straight pieces would cross, as a corner is nearer to a curve than
+    /// the tolerance, those pieces are halved until they do not: so there are neither gaps nor overlaps but where rounding of
+    /// the points themselves makes them, and at most twice as many points and 1000. Regions and holes that rounding leaves fewer than three different points are left out.
     ///
     /// A panorama is cut at 180 degrees. Of the whole sphere a stereographic picture shows what
     /// is less than 135 degrees to the right, left, top or bottom; here the pyramid beyond is left out, not a
@@ -70,8 +73,8 @@ impl Projector {
         let seam = self.cut_to_picture(&mut mosaic);
         let mut outlines = Outlines::new(mosaic, seam);
         let components = std::mem::take(&mut outlines.components);
-        let flattener = Flattener { projector: self, outlines: &outlines, tolerance: tolerance.max(FINEST) };
-        let inner: Vec<Vec<DVec2>> = (0..outlines.chains.len() as u32).map(|chain| flattener.inner(chain)).collect();
+        let flattener = Flattener { projector: self, outlines: &outlines };
+        let inner = flattener.all_inner(tolerance.max(FINEST));
         let regions = components.iter().filter_map(|component| {
             let rings = component.loops.iter().map(|runs| flattener.ring(runs, &inner));
             let mut rings: Vec<_> =
@@ -157,16 +160,39 @@ impl Projector {
 struct Flattener<'a> {
     projector: &'a Projector,
     outlines: &'a Outlines<'a>,
-    tolerance: f64,
 }
 
 /// A stretch of a great circle by the angle from its start.
 struct Curve<'a> {
     flattener: &'a Flattener<'a>,
+    tolerance: f64,
     axes: [DVec3; 2],
     length: f64,
     /// Where it starts and where it ends, as to the seam.
     parts: [Part; 2],
+}
+
+/// A chain in the picture: its points between its ends, with their angles.
+struct Path<'a> {
+    /// `None` if it is straight.
+    curve: Option<Curve<'a>>,
+    points: Vec<(f64, DVec2)>,
+}
+
+impl Path<'_> {
+    /// Adds a point in the middle of a stretch of a curve, if it bends by more than rounding; gives its place.
+    fn halve(&mut self, stretch: usize, [p, q]: [DVec2; 2]) -> Option<DVec2> {
+        let curve = self.curve.as_ref()?;
+        let from = if stretch == 0 { 0.0 } else { self.points[stretch - 1].0 };
+        let to = self.points.get(stretch).map_or(curve.length, |point| point.0);
+        let middle = f64::midpoint(from, to);
+        let place = curve.place(middle);
+        let bends = place.distance(nearest_on_segment(place, p, q)) > f64::EPSILON;
+        (bends && middle > from && middle < to).then(|| {
+            self.points.insert(stretch, (middle, place));
+            place
+        })
+    }
 }
 
 impl Curve<'_> {
@@ -199,8 +225,8 @@ impl Curve<'_> {
     }
 
     /// The points between two angles at which the picture crosses lines of a grid, and those that it needs beyond.
-    fn bend_across_grid(&self, [from, to]: [f64; 2], [p, q]: [DVec2; 2], path: &mut Vec<DVec2>) {
-        let spacing = 2.0 * self.flattener.tolerance.sqrt();
+    fn bend_across_grid(&self, [from, to]: [f64; 2], [p, q]: [DVec2; 2], path: &mut Vec<(f64, DVec2)>) {
+        let spacing = 2.0 * self.tolerance.sqrt();
         let mut cuts: Vec<(f64, DVec2)> = Vec::new();
         for axis in 0..2 {
             let [low, high] = [p[axis].min(q[axis]), p[axis].max(q[axis])].map(|x| x / spacing);
@@ -219,21 +245,21 @@ impl Curve<'_> {
         let (mut from, mut p) = (from, p);
         for (angle, place) in cuts {
             self.bend([from, angle], [p, place], DEPTH, path);
-            path.push(place);
+            path.push((angle, place));
             (from, p) = (angle, place);
         }
         self.bend([from, to], [p, q], DEPTH, path);
     }
 
     /// The points between two angles that the picture needs.
-    fn bend(&self, [from, to]: [f64; 2], [p, q]: [DVec2; 2], depth: u32, path: &mut Vec<DVec2>) {
+    fn bend(&self, [from, to]: [f64; 2], [p, q]: [DVec2; 2], depth: u32, path: &mut Vec<(f64, DVec2)>) {
         let middle = f64::midpoint(from, to);
         let place = self.place(middle);
         let off = place.distance(nearest_on_segment(place, p, q));
         // Not a number is no reason to go on.
-        if depth > 0 && off > self.flattener.tolerance {
+        if depth > 0 && off > self.tolerance {
             self.bend([from, middle], [p, place], depth - 1, path);
-            path.push(place);
+            path.push((middle, place));
             self.bend([middle, to], [place, q], depth - 1, path);
         }
     }
@@ -277,32 +303,70 @@ impl<'a> Flattener<'a> {
         let normal = self.outlines.mosaic.directions.normal(self.outlines.circles.name(self.outlines.circle(chain)));
         let parts = self.outlines.faces_at_ends(chain).map(|[a, b]| self.part_of(a).max(self.part_of(b)));
         let Chain { length, .. } = self.outlines.chains[chain as usize];
-        Curve { flattener: self, axes: [start, normal.v.cross(start).normalize_or_zero()], length, parts }
+        Curve {
+            flattener: self,
+            tolerance: FINEST,
+            axes: [start, normal.v.cross(start).normalize_or_zero()],
+            length,
+            parts,
+        }
     }
 
-    /// The points of a chain without its ends, forward.
-    fn inner(&self, chain: u32) -> Vec<DVec2> {
+    /// The points of all chains without their ends, forward. Where straight pieces of curves cross, they are halved until they do
+    /// not: curves that do not cross may be nearer to each other than the tolerance.
+    fn all_inner(&self, tolerance: f64) -> Vec<Vec<DVec2>> {
+        let mut paths: Vec<Path<'_>> = Vec::new();
+        let mut lines: Vec<Vec<DVec2>> = Vec::new();
+        for chain in 0..self.outlines.chains.len() as u32 {
+            let run = Run { chain, forward: true };
+            let path = self.path(chain, tolerance);
+            let points = path.points.iter().map(|point| point.1);
+            lines.push(std::iter::once(self.start(run)).chain(points).chain([self.end(run)]).collect());
+            paths.push(path);
+        }
+        // What stays nearer than rounding along all of its length would never end.
+        let mut room = ADDED + lines.iter().map(Vec::len).sum::<usize>();
+        loop {
+            let before = room;
+            // Those of one chain from its end, so that the numbers before stay.
+            for [chain, stretch] in crossing(&lines, 2.0 * tolerance.sqrt()).into_iter().rev().take(room) {
+                let (path, line) = (&mut paths[chain as usize], &mut lines[chain as usize]);
+                if let Some(place) = path.halve(stretch as usize, [line[stretch as usize], line[stretch as usize + 1]])
+                {
+                    line.insert(stretch as usize + 1, place);
+                    room -= 1;
+                }
+            }
+            if room == before {
+                break;
+            }
+        }
+        paths.into_iter().map(|path| path.points.into_iter().map(|point| point.1).collect()).collect()
+    }
+
+    /// A chain in the picture.
+    fn path(&self, chain: u32, tolerance: f64) -> Path<'_> {
         let forward = Run { chain, forward: true };
         let ends = [self.outlines.start(forward), self.outlines.end(forward)];
         // Great circles are straight in gnomonic pictures, as are meridians in panoramas.
         let is_meridian = || ends.iter().any(|&v| self.outlines.spot(v) == Spot::Pole) || self.is_on_seam(chain);
-        let mut path = Vec::new();
+        let mut points = Vec::new();
         if self.projector.projection == Projection::Gnomonic || self.is_panorama() && is_meridian() {
-            return path;
+            return Path { curve: None, points };
         }
-        let curve = self.curve(chain);
+        let curve = Curve { tolerance, ..self.curve(chain) };
         let pieces = (curve.length / LONG).ceil().max(1.0);
         let mut last = self.start(forward);
         for k in 1..=pieces as u32 {
             let [from, to] = [k - 1, k].map(|k| curve.length * f64::from(k) / pieces);
             let next = if k == pieces as u32 { self.end(forward) } else { curve.place(to) };
-            curve.bend_across_grid([from, to], [last, next], &mut path);
+            curve.bend_across_grid([from, to], [last, next], &mut points);
             if k < pieces as u32 {
-                path.push(next);
+                points.push((to, next));
             }
             last = next;
         }
-        path
+        Path { curve: Some(curve), points }
     }
 
     /// Where a run starts: the same place for all that start or end there, but for the seam and its ends.

@@ -238,7 +238,8 @@ impl<'a> Exact<'a> {
             let [p, q] = ends.each_ref().map(rounded);
             let angle = rounded(&arc.inward).dot(p.cross(q)).atan2(p.dot(q));
             let off = (side.length - angle).rem_euclid(TAU);
-            if off.min(TAU - off) > 1e-9 || side.length > TAU {
+            // A side may go all around but for less than the rounding of the sum of its stretches.
+            if off.min(TAU - off) > 1e-9 || side.length > TAU + 1e-9 {
                 return fail(format!("a side is {} long, not {angle} or a turn more", side.length));
             }
         }

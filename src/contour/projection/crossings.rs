@@ -1,0 +1,99 @@
+//! Which of many polylines cross each other.
+
+use glam::DVec2;
+use robust::{Coord, orient2d};
+use rustc_hash::FxHashMap;
+
+/// A stretch of a polyline between two of its points.
+#[derive(Clone, Copy)]
+struct Segment {
+    /// The numbers of the polyline and of the stretch.
+    at: [u32; 2],
+    ends: [DVec2; 2],
+}
+
+impl Segment {
+    /// Where it begins along x.
+    fn low(&self) -> f64 {
+        self.ends[0].x.min(self.ends[1].x)
+    }
+}
+
+/// The stretches of polylines that meet others but at points that both have, as numbers of polyline and stretch, ascending. Exact for the
+/// coordinates as they are.
+///
+/// Segments are sorted into squares of that size: the cost is theirs, and the pairs within each.
+pub(super) fn crossing(lines: &[Vec<DVec2>], square: f64) -> Vec<[u32; 2]> {
+    let mut squares: FxHashMap<[i64; 2], Vec<Segment>> = FxHashMap::default();
+    for (line, points) in (0..).zip(lines) {
+        for (k, pair) in (0..).zip(points.windows(2)) {
+            let segment = Segment { at: [line, k], ends: [pair[0], pair[1]] };
+            let [low, high] = [pair[0].min(pair[1]), pair[0].max(pair[1])].map(|p| (p / square).floor().as_i64vec2());
+            for x in low.x..=high.x {
+                for y in low.y..=high.y {
+                    squares.entry([x, y]).or_default().push(segment);
+                }
+            }
+        }
+    }
+    let mut found = Vec::new();
+    for segments in squares.values_mut() {
+        segments.sort_by(|s, t| s.low().total_cmp(&t.low()));
+        for (k, first) in segments.iter().enumerate() {
+            let high = first.ends[0].x.max(first.ends[1].x);
+            for second in segments[k + 1..].iter().take_while(|second| second.low() <= high) {
+                if meet(first.ends, second.ends) {
+                    found.extend([first.at, second.at]);
+                }
+            }
+        }
+    }
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// True if two segments that have no end in common meet.
+fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
+    if [c, d].contains(&a) || [c, d].contains(&b) {
+        return false;
+    }
+    let apart = a.max(b).cmplt(c.min(d)) | c.max(d).cmplt(a.min(b));
+    if apart.any() {
+        return false;
+    }
+    let turn = |p: DVec2, q: DVec2, r: DVec2| {
+        let [p, q, r] = [p, q, r].map(|p| Coord { x: p.x, y: p.y });
+        orient2d(p, q, r)
+    };
+    // On one side of the other's line, both, and not on it.
+    let beside = |x: f64, y: f64| (x > 0.0 && y > 0.0) || (x < 0.0 && y < 0.0);
+    !beside(turn(a, b, c), turn(a, b, d)) && !beside(turn(c, d, a), turn(c, d, b))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_cross_where_segments_meet_away_from_common_points() {
+        let lines: [&[[f64; 2]]; 6] = [
+            &[[0.0, 0.0], [1.0, 0.1], [2.0, 0.0]],
+            // From a point of the first one.
+            &[[1.0, 0.1], [1.0, 1.0]],
+            // Over the middle of the first one, and back.
+            &[[1.5, 1.0], [1.4, -1.0]],
+            // Ends on the first one's first stretch.
+            &[[0.5, 0.05], [0.5, 1.0]],
+            // Beside all of them; in one line with a stretch, but apart.
+            &[[3.0, 0.0], [4.0, 0.0]],
+            &[[5.0, 0.0], [6.0, 0.0], [6.0, 1.0]],
+        ];
+        let lines = lines.map(|line| line.iter().copied().map(DVec2::from).collect::<Vec<_>>());
+        for square in [0.1, 1.0, 100.0] {
+            assert_eq!(crossing(&lines, square), [[0, 0], [0, 1], [2, 0], [3, 0]], "{square}");
+        }
+        let eight = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]].map(DVec2::from).to_vec();
+        assert_eq!(crossing(&[eight], 0.3), [[0, 0], [0, 2]], "itself");
+    }
+}
