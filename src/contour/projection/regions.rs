@@ -27,8 +27,8 @@ struct Line {
 
 /// Longitudes further from 0 than this are near a panorama's seam.
 const BESIDE: f64 = 0.75 * PI;
-/// So many points, and as many as there are, may be added to keep curves apart.
-const ADDED: usize = 1000;
+/// So many times the points that there are may be added to keep curves apart.
+const ADDED: usize = 8;
 /// No picture is finer, but where that keeps curves apart.
 const FINEST: f64 = 1e-9;
 
@@ -63,7 +63,7 @@ impl Projector {
     /// Curves are flattened to within about `tolerance`, in the picture's units (less than 1e-9, or NaN, counts as 1e-9). Regions
     /// that share a part of their boundary share its points exactly, and where straight pieces would cross, as a corner is nearer to a curve than
     /// the tolerance, those pieces are halved until they do not: so there are neither gaps nor overlaps but where rounding of
-    /// the points themselves makes them, and at most twice as many points and 1000. Regions and holes that rounding leaves fewer than three different points are left out.
+    /// the points themselves makes them, and with at most nine times as many points. Regions and holes that rounding leaves fewer than three different points are left out.
     ///
     /// A panorama is cut at 180 degrees. Of the whole sphere a stereographic picture shows what
     /// is less than 135 degrees to the right, left, top or bottom; here the pyramid beyond is left out, not a
@@ -325,7 +325,7 @@ impl<'a> Flattener<'a> {
             paths.push(path);
         }
         // What stays nearer than rounding along all of its length would never end.
-        let mut room = ADDED + lines.iter().map(Vec::len).sum::<usize>();
+        let mut room = ADDED * lines.iter().map(Vec::len).sum::<usize>();
         loop {
             let before = room;
             // Those of one chain from its end, so that the numbers before stay.
