@@ -62,8 +62,11 @@ impl Projector {
     ///
     /// Curves are flattened to within about `tolerance`, in the picture's units (less than 1e-9, or NaN, counts as 1e-9). Regions
     /// that share a part of their boundary share its points exactly, and where straight pieces would cross, as a corner is nearer to a curve than
-    /// the tolerance, those pieces are halved until they do not: so there are neither gaps nor overlaps but where rounding of
-    /// the points themselves makes them, and with at most nine times as many points. Regions and holes that rounding leaves fewer than three different points are left out.
+    /// the tolerance, those pieces are halved until they do not, with at most nine times as many points. Two exceptions are left, and not
+    /// counted: what is nearer than the rounding of the points may cross still; and a whole boundary between a straight piece and its curve crosses nothing, so
+    /// that a hole may lie outside of its exterior.
+    ///
+    /// Regions and holes that rounding leaves fewer than three different points are left out.
     ///
     /// A panorama is cut at 180 degrees. Of the whole sphere a stereographic picture shows what
     /// is less than 135 degrees to the right, left, top or bottom; here the pyramid beyond is left out, not a
