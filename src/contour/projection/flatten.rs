@@ -29,8 +29,8 @@ impl Projector {
         }
         let paths = parts.into_iter().filter(|part| part.len() > 2).map(|part| match self.projection {
             Projection::Stereographic => {
-                let path = self.closed(&self.without_antipode(part), tolerance);
-                self.inside_window(path)
+                let part = self.off_antipode(&part).map_or(part.clone(), |plane| half(&part, plane));
+                self.inside_window(self.closed(&part, tolerance))
             }
             _ => self.closed(&part, tolerance),
         });
@@ -52,6 +52,10 @@ impl Projector {
                 .flat_map(|arc| if on_plane(arc, seam) { [Some(arc), None] } else { both(arc) })
                 .flatten()
                 .collect();
+        }
+        if self.projection == Projection::Stereographic {
+            let cut = |arc: [DVec3; 2]| self.off_antipode(&arc).map_or(Some(arc), |plane| positive_stretch(arc, plane));
+            arcs = arcs.into_iter().filter_map(cut).collect();
         }
         let mut lines = Vec::new();
         for arc in arcs {
@@ -159,17 +163,17 @@ impl Projector {
         self.bend([middle, b], [place, q], sector, tolerance, depth - 1, path);
     }
 
-    /// Cuts the corner at the point opposite to `towards`, which has no picture, off a part between
-    /// seams; what is cut off lies outside of the window.
-    fn without_antipode(&self, part: Vec<DVec3>) -> Vec<DVec3> {
+    /// A plane that cuts the point opposite to `towards`, which has no picture, off a part between seams that
+    /// may come near it; what is cut off lies outside of the window.
+    fn off_antipode(&self, part: &[DVec3]) -> Option<DVec3> {
         let sum: DVec3 = part.iter().sum();
         if sum.z >= 0.0 {
-            return part;
+            return None;
         }
         // The window's corners have the radius h sqrt 2. What |x| + |y| < t |z| drops is less than
         // atan t from the antipode; with the t of radius 2 h it lies outside of the window.
         let outermost = PI - 2.0 * (self.window.high.x * 2.0).atan();
-        half(&part, DVec3::new(1f64.copysign(sum.x), 1f64.copysign(sum.y), outermost.tan()))
+        Some(DVec3::new(1f64.copysign(sum.x), 1f64.copysign(sum.y), outermost.tan()))
     }
 
     fn inside_window(&self, mut path: Vec<DVec2>) -> Vec<DVec2> {
