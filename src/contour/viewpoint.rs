@@ -6,6 +6,9 @@ use crate::scene::{PieceId, PieceRef, PolygonId, Scene, Side, SupportingPlane};
 use glam::DVec3;
 use std::cmp::Ordering;
 
+#[cfg(test)]
+mod tests;
+
 /// A viewpoint: a point in space, or a point on one side of a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
@@ -211,6 +214,9 @@ fn not_behind(scene: &Scene, piece: PieceRef<'_>, side: Side, foot: DVec3) -> DV
         let mut p = foot;
         p[second] = step(foot[second], i);
         p[third] = step(foot[third], j);
+        if allowed(p) {
+            return Some(p);
+        }
         let moved = |steps: i64| {
             let mut q = p;
             q[axis] = step(foot[axis], up * steps);

@@ -16,8 +16,8 @@ impl Projector {
     ///
     /// `boundary` holds unit directions, counter-clockwise seen from outside of the sphere, less than
     /// pi apart. The paths run clockwise (y up). They leave the true picture by at most `tolerance`, in
-    /// the picture's units. Cells that share an arc in part may round it differently within that: draw
-    /// them with a hairline of their own colour.
+    /// the picture's units, or twice that beside a pole of a panorama. Cells that share an arc in part may
+    /// round it differently within that: draw them with a hairline of their own colour.
     pub fn cell(&self, boundary: &[DVec3], tolerance: f64) -> Vec<Vec<DVec2>> {
         let mut cell: Vec<DVec3> = boundary.iter().map(|&d| self.frame.components(d)).collect();
         for &clip in &self.clips {
@@ -217,7 +217,8 @@ impl Projector {
             if low > high {
                 continue;
             }
-            let [p, q] = [pair[0] + step * low, pair[0] + step * high];
+            // A step taken whole may round to another point than its end, and break the line there.
+            let [p, q] = [low, high].map(|t| if t == 1.0 { pair[1] } else { pair[0] + step * t });
             match lines.last_mut() {
                 Some(last) if last.last() == Some(&p) => last.push(q),
                 _ => lines.push(vec![p, q]),
