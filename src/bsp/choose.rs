@@ -51,8 +51,9 @@ pub(super) enum Choice {
     Polygon(PlaneId),
     /// An axis-aligned plane through a coordinate of a vertex; both sides get fewer fragments than there are.
     Axis(Axis, f64),
-    /// A plane through three vertices that are not on a line. That it divides the fragments is only an estimate.
-    Vertices([VertexId; 3]),
+    /// A plane through three vertices that are not on a line. That it divides the fragments is only an estimate; else take the plane of
+    /// a fragment in the node.
+    Vertices { vertices: [VertexId; 3], or: PlaneId },
 }
 
 /// How a plane divides fragments.
@@ -111,7 +112,7 @@ pub(super) fn choose(
     if let Some((work, vertices)) = best_vertex_plane(skeleton, items)
         && work < least
     {
-        choice = Choice::Vertices(vertices);
+        choice = Choice::Vertices { vertices, or: plane };
     }
     choice
 }

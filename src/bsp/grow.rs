@@ -156,9 +156,9 @@ impl Grower {
         match choose(skeleton, &candidates, how, &|x| x.is_finite() && skeleton.bits.holds(x)) {
             Choice::Polygon(plane) => plane,
             Choice::Axis(axis, value) => self.skeleton.axis_plane(axis, value),
-            Choice::Vertices(vertices) => {
+            Choice::Vertices { vertices, or } => {
                 let plane = self.skeleton.vertex_plane(vertices);
-                if self.divides(items, plane) { plane } else { items[0].own }
+                if self.divides(items, plane) { plane } else { or }
             }
         }
     }

@@ -139,7 +139,7 @@ impl<'a> Outlines<'a> {
     }
 
     /// True if the face to the left of the start of a run is at the right end of a panorama.
-    pub(crate) fn is_right(&self, run: Run) -> bool {
+    fn is_right(&self, run: Run) -> bool {
         let face = self.arrangement.face_beside(self.first_half(run));
         face.is_some_and(|face| self.mosaic.faces[face as usize].part == super::mosaic::Part::Right)
     }
