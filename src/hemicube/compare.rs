@@ -1,0 +1,387 @@
+//! All methods side by side, on the same views in one run.
+
+use super::deviations::Deviations;
+use super::error::BaselineError;
+#[cfg(feature = "rays")]
+use super::rays::Rays;
+use super::view::Hemicube;
+use crate::bsp::SceneBsp;
+use crate::bvh::SceneBvh;
+use crate::contour::{ContourImage, Domain, ViewError, Viewpoint};
+use crate::integral::Sums;
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+use std::fmt;
+use std::hint::black_box;
+use std::num::NonZeroUsize;
+use std::time::Instant;
+
+/// A way from a viewpoint to the form factors of all polygons.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Method {
+    /// The contour image in the order of the 3D BSP, and its form factors.
+    Contour,
+    /// The contour image by a hierarchy of boxes, and its form factors.
+    ContourByBoxes,
+    /// [`Hemicube::view`].
+    Hemicube {
+        /// Rows and columns of the top face.
+        resolution: usize,
+    },
+    /// [`Hemicube::analytic`].
+    Analytic {
+        /// Rows and columns of the top face.
+        resolution: usize,
+    },
+    /// `Rays::view`.
+    #[cfg(feature = "rays")]
+    Rays {
+        /// How many.
+        rays: u32,
+    },
+}
+
+impl Method {
+    /// Its name, without the resolution.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Contour => "contour",
+            Self::ContourByBoxes => "contour-boxes",
+            Self::Hemicube { .. } => "hemicube",
+            Self::Analytic { .. } => "analytic",
+            #[cfg(feature = "rays")]
+            Self::Rays { .. } => "rays",
+        }
+    }
+
+    /// Rows and columns of the top face of a hemicube, or the number of rays; `None` for contour images, which have no resolution.
+    pub fn resolution(self) -> Option<usize> {
+        match self {
+            Self::Contour | Self::ContourByBoxes => None,
+            Self::Hemicube { resolution } | Self::Analytic { resolution } => Some(resolution),
+            #[cfg(feature = "rays")]
+            Self::Rays { rays } => Some(rays as usize),
+        }
+    }
+}
+
+impl fmt::Display for Method {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())?;
+        self.resolution().map_or(Ok(()), |resolution| write!(f, " {resolution}"))
+    }
+}
+
+/// What one method took and how far off it was.
+#[derive(Clone, Debug)]
+pub struct ComparisonRow {
+    /// The method.
+    pub method: Method,
+    /// What was done once for the scene, in seconds: the hierarchy of boxes, the hemicube's tables, the hierarchy of the rays. 0 for
+    /// the contour in the order of the 3D BSP, which is given.
+    pub setup_s: f64,
+    /// The time of each view with its form factors, in milliseconds: the shortest of all rounds.
+    pub view_ms: Vec<f64>,
+    /// The relative errors of form factors above 1e-3, over all views.
+    pub above_1e3: Deviations,
+    /// The relative errors of form factors above 1e-4, over all views; polygons that are seen and lost, of any size.
+    pub above_1e4: Deviations,
+    /// How many form factors were evaluated, over all views: one for each cell of a contour image, for each pixel of a
+    /// hemicube; none for rays.
+    pub evaluations: usize,
+}
+
+impl ComparisonRow {
+    fn new(method: Method, setup_s: f64) -> Self {
+        let [above_1e3, above_1e4] = [1e-3, 1e-4].map(Deviations::above);
+        Self { method, setup_s, view_ms: Vec::new(), above_1e3, above_1e4, evaluations: 0 }
+    }
+
+    /// The mean time of a view in milliseconds; 0 without views.
+    pub fn mean_ms(&self) -> f64 {
+        self.view_ms.iter().fold(0.0, |sum, ms| sum + ms) / self.view_ms.len().max(1) as f64
+    }
+
+    /// The median time of a view in milliseconds, the upper one of two; 0 without views.
+    pub fn median_ms(&self) -> f64 {
+        let mut sorted = self.view_ms.clone();
+        sorted.sort_unstable_by(f64::total_cmp);
+        sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// The longest time of a view in milliseconds; 0 without views.
+    pub fn max_ms(&self) -> f64 {
+        self.view_ms.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+/// Why methods could not be compared. Views are counted from 0.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum CompareError {
+    /// A method that there is not.
+    #[error(transparent)]
+    Method(#[from] BaselineError),
+    /// A contour image failed.
+    #[error("view {view}: {source}")]
+    Contour {
+        /// Which view.
+        view: usize,
+        /// Why.
+        source: ViewError,
+    },
+    /// Another method failed.
+    #[error("view {view}: {source}")]
+    Baseline {
+        /// Which view.
+        view: usize,
+        /// Why.
+        source: BaselineError,
+    },
+    /// A domain without a normal has no form factors.
+    #[error("view {view}: there are form factors above a plane only; look at a hemisphere")]
+    NoNormal {
+        /// Which view.
+        view: usize,
+    },
+}
+
+/// So many views are taken by one method before the next one takes them: few enough that the methods share the ups and downs of a busy
+/// machine, and that what is known of the views needs little memory.
+const BLOCK: usize = 20;
+
+/// Takes all views with every method, `rounds` times each on one thread, and compares form factors with those of the contour image
+/// in the order of `bsp`, which are exact up to the rounding of their sums if its epsilon is 0.
+///
+/// A method's views are timed in turn, so that none has just been taken when it is taken again; what a method does once for
+/// the scene is timed apart. Factors are looked at outside of the times. `done` is told the number of views taken by one
+/// method in all rounds as they are completed; there are `views.len() * methods.len()` in all.
+///
+/// Memory: about 36 bytes for each pixel of a top face, 8 bytes for each form factor above 1e-4 of a view, method and threshold, and what
+/// is seen in 20 views.
+///
+/// ```
+/// use nusselt::bsp::{BspOptions, SceneBsp};
+/// use nusselt::contour::{Domain, Viewpoint};
+/// use nusselt::hemicube::{Method, compare};
+/// use std::num::NonZeroUsize;
+///
+/// let scene = nusselt::samples::cornell_box().to_builder().build()?;
+/// let bsp = SceneBsp::build(&scene, &BspOptions::default())?;
+/// let views = [(Viewpoint::free(glam::DVec3::new(278.0, 273.0, 1.0)), Domain::Hemisphere(glam::DVec3::Z))];
+/// let rows = compare(&bsp, &views, &[Method::Contour, Method::Hemicube { resolution: 64 }], NonZeroUsize::MIN, |_| ())?;
+/// assert_eq!(rows[0].above_1e4.quantile(1.0), 0.0);
+/// println!("{} is off by up to {}", rows[1].method, rows[1].above_1e4.quantile(1.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If a resolution is not one that hemicubes have, or if a view fails: see [`CompareError`].
+pub fn compare(
+    bsp: &SceneBsp,
+    views: &[(Viewpoint, Domain)],
+    methods: &[Method],
+    rounds: NonZeroUsize,
+    mut done: impl FnMut(usize),
+) -> Result<Vec<ComparisonRow>, CompareError> {
+    let mut equipment = Equipment::new(bsp, methods)?;
+    let mut rows: Vec<_> =
+        methods.iter().map(|&method| ComparisonRow::new(method, equipment.setup_s(method))).collect();
+    let polygons = bsp.scene().polygon_count();
+    let [mut factors, mut exact] = [(); 2].map(|()| Vec::with_capacity(polygons));
+    for (block, views) in views.chunks(BLOCK).enumerate() {
+        let known: Result<Vec<_>, _> =
+            views.iter().enumerate().map(|(k, view)| Known::new(bsp, view, block * BLOCK + k)).collect();
+        let known = known?;
+        for row in &mut rows {
+            let mut fastest = vec![f64::INFINITY; known.len()];
+            for round in 0..rounds.get() {
+                for (known, fastest) in known.iter().zip(&mut fastest) {
+                    factors.clear();
+                    let wanted = (round == 0).then_some(&mut factors);
+                    let (ms, evaluations) = equipment.take(row.method, known, wanted)?;
+                    *fastest = fastest.min(ms);
+                    if round == 0 {
+                        row.evaluations += evaluations;
+                        dense(&known.exact, polygons, &mut exact);
+                        for deviations in [&mut row.above_1e3, &mut row.above_1e4] {
+                            deviations.add(factors.iter().copied(), exact.iter().copied());
+                        }
+                    }
+                }
+            }
+            row.view_ms.extend(fastest);
+            done(known.len());
+        }
+    }
+    Ok(rows)
+}
+
+/// A view and its exact form factors.
+struct Known {
+    number: usize,
+    viewpoint: Viewpoint,
+    domain: Domain,
+    normal: DVec3,
+    exact: Sums,
+}
+
+impl Known {
+    fn new(bsp: &SceneBsp, &(viewpoint, domain): &(Viewpoint, Domain), number: usize) -> Result<Self, CompareError> {
+        let failed = |source| CompareError::Contour { view: number, source };
+        let image = bsp.view(&viewpoint, &domain).map_err(failed)?;
+        match (image.normal(), image.form_factors()) {
+            (Some(normal), Some(exact)) => Ok(Self { number, viewpoint, domain, normal, exact }),
+            _ => Err(CompareError::NoNormal { view: number }),
+        }
+    }
+}
+
+/// What is made once for all views, with the seconds that took.
+struct Equipment<'a> {
+    bsp: &'a SceneBsp,
+    boxes: Option<(SceneBvh, f64)>,
+    /// By resolution.
+    hemicubes: BTreeMap<usize, (Hemicube, f64)>,
+    #[cfg(feature = "rays")]
+    rays: Option<(Rays, f64)>,
+}
+
+impl<'a> Equipment<'a> {
+    fn new(bsp: &'a SceneBsp, methods: &[Method]) -> Result<Self, CompareError> {
+        let mut equipment = Self {
+            bsp,
+            boxes: None,
+            hemicubes: BTreeMap::new(),
+            #[cfg(feature = "rays")]
+            rays: None,
+        };
+        let scene = bsp.scene();
+        for &method in methods {
+            let start = Instant::now();
+            let seconds = || start.elapsed().as_secs_f64();
+            match method {
+                Method::Contour => {}
+                Method::ContourByBoxes => {
+                    let boxes = SceneBvh::build(scene);
+                    equipment.boxes = Some((boxes, seconds()));
+                }
+                Method::Hemicube { resolution } | Method::Analytic { resolution } => {
+                    if let Entry::Vacant(place) = equipment.hemicubes.entry(resolution) {
+                        let hemicube = Hemicube::new(scene, resolution)?;
+                        place.insert((hemicube, seconds()));
+                    }
+                }
+                #[cfg(feature = "rays")]
+                Method::Rays { rays: 0 } => return Err(BaselineError::NoRays.into()),
+                #[cfg(feature = "rays")]
+                Method::Rays { .. } => {
+                    if equipment.rays.is_none() {
+                        let rays = Rays::new(scene);
+                        equipment.rays = Some((rays, seconds()));
+                    }
+                }
+            }
+        }
+        Ok(equipment)
+    }
+
+    fn setup_s(&self, method: Method) -> f64 {
+        let seconds = match method {
+            Method::Contour => None,
+            Method::ContourByBoxes => self.boxes.as_ref().map(|made| made.1),
+            Method::Hemicube { resolution } | Method::Analytic { resolution } => {
+                self.hemicubes.get(&resolution).map(|made| made.1)
+            }
+            #[cfg(feature = "rays")]
+            Method::Rays { .. } => self.rays.as_ref().map(|made| made.1),
+        };
+        seconds.unwrap_or(0.0)
+    }
+
+    /// Takes a view: the milliseconds it took, and how many form factors were evaluated. Appends the form factors of all polygons by
+    /// their numbers to `wanted`.
+    fn take(
+        &mut self,
+        method: Method,
+        view: &Known,
+        wanted: Option<&mut Vec<f64>>,
+    ) -> Result<(f64, usize), CompareError> {
+        let Known { number, ref viewpoint, normal, .. } = *view;
+        let failed = |source| CompareError::Baseline { view: number, source };
+        let missing = "made when the methods were named";
+        match method {
+            Method::Contour => self.image(view, wanted, |equipment| equipment.bsp.view(viewpoint, &view.domain)),
+            Method::ContourByBoxes => self.image(view, wanted, |equipment| {
+                equipment.boxes.as_ref().expect(missing).0.view(viewpoint, &view.domain)
+            }),
+            Method::Hemicube { resolution } => {
+                let (hemicube, _) = self.hemicubes.get_mut(&resolution).expect(missing);
+                let start = Instant::now();
+                let seen = hemicube.view(viewpoint, normal).map_err(failed)?;
+                let ms = since(start);
+                keep(wanted, black_box(seen.factors()).iter().copied());
+                Ok((ms, seen.stats().pixels))
+            }
+            Method::Analytic { resolution } => {
+                let (hemicube, _) = self.hemicubes.get_mut(&resolution).expect(missing);
+                let start = Instant::now();
+                let seen = hemicube.analytic(viewpoint, normal).map_err(failed)?;
+                let ms = since(start);
+                keep(wanted, black_box(seen.factors()).iter().copied());
+                Ok((ms, seen.evaluations()))
+            }
+            #[cfg(feature = "rays")]
+            Method::Rays { rays } => {
+                let (tracer, _) = self.rays.as_mut().expect(missing);
+                let start = Instant::now();
+                let seen = black_box(tracer.view(viewpoint, normal, rays, number as u64).map_err(failed)?);
+                let ms = since(start);
+                keep(wanted, seen.factors());
+                Ok((ms, 0))
+            }
+        }
+    }
+
+    /// The same by contour images. Taking an image apart again is part of its time.
+    fn image(
+        &self,
+        view: &Known,
+        wanted: Option<&mut Vec<f64>>,
+        see: impl Fn(&Self) -> Result<ContourImage, ViewError>,
+    ) -> Result<(f64, usize), CompareError> {
+        let number = view.number;
+        let start = Instant::now();
+        let image = see(self).map_err(|source| CompareError::Contour { view: number, source })?;
+        let sums = image.form_factors().ok_or(CompareError::NoNormal { view: number })?;
+        let cells = image.cell_count();
+        drop(image);
+        let ms = since(start);
+        let sums = black_box(sums);
+        if let Some(factors) = wanted {
+            dense(&sums, self.bsp.scene().polygon_count(), factors);
+        }
+        Ok((ms, cells))
+    }
+}
+
+fn since(start: Instant) -> f64 {
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+fn keep(wanted: Option<&mut Vec<f64>>, factors: impl Iterator<Item = f64>) {
+    if let Some(wanted) = wanted {
+        wanted.extend(factors);
+    }
+}
+
+/// The form factors of all polygons by their numbers.
+fn dense(sums: &Sums, polygons: usize, factors: &mut Vec<f64>) {
+    factors.clear();
+    factors.resize(polygons, 0.0);
+    for sum in &sums.polygons {
+        factors[sum.polygon.index()] = sum.both();
+    }
+}
