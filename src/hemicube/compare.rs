@@ -9,9 +9,8 @@ use crate::bsp::SceneBsp;
 use crate::bvh::SceneBvh;
 use crate::contour::{ContourImage, Domain, ViewError, Viewpoint};
 use crate::integral::Sums;
+use crate::scene::Scene;
 use glam::DVec3;
-use std::collections::BTreeMap;
-use std::collections::btree_map::Entry;
 use std::fmt;
 use std::hint::black_box;
 use std::num::NonZeroUsize;
@@ -159,8 +158,8 @@ const BLOCK: usize = 20;
 /// the scene is timed apart. Factors are looked at outside of the times. `done` is told the number of views taken by one
 /// method in all rounds as they are completed; there are `views.len() * methods.len()` in all.
 ///
-/// Memory: about 36 bytes for each pixel of a top face, 8 bytes for each form factor above 1e-4 of a view, method and threshold, and what
-/// is seen in 20 views.
+/// Memory: about 36 bytes for each pixel of the top face of every hemicube asked for, and, however many views there are, a few
+/// megabytes a method, what is seen in 20 views, and 8 bytes for the time of each view and method.
 ///
 /// ```
 /// use nusselt::bsp::{BspOptions, SceneBsp};
@@ -186,22 +185,20 @@ pub fn compare(
     rounds: NonZeroUsize,
     mut done: impl FnMut(usize),
 ) -> Result<Vec<ComparisonRow>, CompareError> {
-    let mut equipment = Equipment::new(bsp, methods)?;
+    let mut tools = methods.iter().map(|&method| Tool::timed(method, bsp)).collect::<Result<Vec<_>, _>>()?;
     let mut rows: Vec<_> =
-        methods.iter().map(|&method| ComparisonRow::new(method, equipment.setup_s(method))).collect();
+        methods.iter().zip(&tools).map(|(&method, tool)| ComparisonRow::new(method, tool.1)).collect();
     let polygons = bsp.scene().polygon_count();
     let [mut factors, mut exact] = [(); 2].map(|()| Vec::with_capacity(polygons));
     for (block, views) in views.chunks(BLOCK).enumerate() {
-        let known: Result<Vec<_>, _> =
-            views.iter().enumerate().map(|(k, view)| Known::new(bsp, view, block * BLOCK + k)).collect();
-        let known = known?;
-        for row in &mut rows {
+        let known = views.iter().enumerate().map(|(k, view)| Known::new(bsp, view, block * BLOCK + k));
+        let known = known.collect::<Result<Vec<_>, _>>()?;
+        for (row, (tool, _)) in rows.iter_mut().zip(&mut tools) {
             let mut fastest = vec![f64::INFINITY; known.len()];
             for round in 0..rounds.get() {
                 for (known, fastest) in known.iter().zip(&mut fastest) {
-                    factors.clear();
                     let wanted = (round == 0).then_some(&mut factors);
-                    let (ms, evaluations) = equipment.take(row.method, known, wanted)?;
+                    let (ms, evaluations) = tool.take(known, wanted)?;
                     *fastest = fastest.min(ms);
                     if round == 0 {
                         row.evaluations += evaluations;
@@ -239,132 +236,90 @@ impl Known {
     }
 }
 
-/// What is made once for all views, with the seconds that took.
-struct Equipment<'a> {
-    bsp: &'a SceneBsp,
-    boxes: Option<(SceneBvh, f64)>,
-    /// By resolution.
-    hemicubes: BTreeMap<usize, (Hemicube, f64)>,
+/// A method with what it makes once for all views.
+enum Tool<'a> {
+    Contour(&'a SceneBsp),
+    ContourByBoxes(Box<SceneBvh>),
+    Hemicube(Box<Hemicube>),
+    Analytic(Box<Hemicube>),
     #[cfg(feature = "rays")]
-    rays: Option<(Rays, f64)>,
+    Rays(Box<Rays>, u32),
 }
 
-impl<'a> Equipment<'a> {
-    fn new(bsp: &'a SceneBsp, methods: &[Method]) -> Result<Self, CompareError> {
-        let mut equipment = Self {
-            bsp,
-            boxes: None,
-            hemicubes: BTreeMap::new(),
-            #[cfg(feature = "rays")]
-            rays: None,
-        };
+impl<'a> Tool<'a> {
+    /// With the seconds that making it took.
+    fn timed(method: Method, bsp: &'a SceneBsp) -> Result<(Self, f64), BaselineError> {
         let scene = bsp.scene();
-        for &method in methods {
-            let start = Instant::now();
-            let seconds = || start.elapsed().as_secs_f64();
-            match method {
-                Method::Contour => {}
-                Method::ContourByBoxes => {
-                    let boxes = SceneBvh::build(scene);
-                    equipment.boxes = Some((boxes, seconds()));
-                }
-                Method::Hemicube { resolution } | Method::Analytic { resolution } => {
-                    if let Entry::Vacant(place) = equipment.hemicubes.entry(resolution) {
-                        let hemicube = Hemicube::new(scene, resolution)?;
-                        place.insert((hemicube, seconds()));
-                    }
-                }
-                #[cfg(feature = "rays")]
-                Method::Rays { rays: 0 } => return Err(BaselineError::NoRays.into()),
-                #[cfg(feature = "rays")]
-                Method::Rays { .. } => {
-                    if equipment.rays.is_none() {
-                        let rays = Rays::new(scene);
-                        equipment.rays = Some((rays, seconds()));
-                    }
-                }
-            }
-        }
-        Ok(equipment)
-    }
-
-    fn setup_s(&self, method: Method) -> f64 {
-        let seconds = match method {
-            Method::Contour => None,
-            Method::ContourByBoxes => self.boxes.as_ref().map(|made| made.1),
-            Method::Hemicube { resolution } | Method::Analytic { resolution } => {
-                self.hemicubes.get(&resolution).map(|made| made.1)
-            }
+        let start = Instant::now();
+        let tool = match method {
+            // Made before.
+            Method::Contour => return Ok((Self::Contour(bsp), 0.0)),
+            Method::ContourByBoxes => Self::ContourByBoxes(Box::new(SceneBvh::build(scene))),
+            Method::Hemicube { resolution } => Self::Hemicube(Box::new(Hemicube::new(scene, resolution)?)),
+            Method::Analytic { resolution } => Self::Analytic(Box::new(Hemicube::new(scene, resolution)?)),
             #[cfg(feature = "rays")]
-            Method::Rays { .. } => self.rays.as_ref().map(|made| made.1),
+            Method::Rays { rays: 0 } => return Err(BaselineError::NoRays),
+            #[cfg(feature = "rays")]
+            Method::Rays { rays } => Self::Rays(Box::new(Rays::new(scene)), rays),
         };
-        seconds.unwrap_or(0.0)
+        Ok((tool, start.elapsed().as_secs_f64()))
     }
 
-    /// Takes a view: the milliseconds it took, and how many form factors were evaluated. Appends the form factors of all polygons by
-    /// their numbers to `wanted`.
-    fn take(
-        &mut self,
-        method: Method,
-        view: &Known,
-        wanted: Option<&mut Vec<f64>>,
-    ) -> Result<(f64, usize), CompareError> {
-        let Known { number, ref viewpoint, normal, .. } = *view;
+    /// Takes a view: the milliseconds it took, and how many form factors were evaluated. Replaces `wanted` by the form factors of all
+    /// polygons by their numbers.
+    fn take(&mut self, view: &Known, mut wanted: Option<&mut Vec<f64>>) -> Result<(f64, usize), CompareError> {
+        let Known { number, ref viewpoint, domain, normal, .. } = *view;
         let failed = |source| CompareError::Baseline { view: number, source };
-        let missing = "made when the methods were named";
-        match method {
-            Method::Contour => self.image(view, wanted, |equipment| equipment.bsp.view(viewpoint, &view.domain)),
-            Method::ContourByBoxes => self.image(view, wanted, |equipment| {
-                equipment.boxes.as_ref().expect(missing).0.view(viewpoint, &view.domain)
-            }),
-            Method::Hemicube { resolution } => {
-                let (hemicube, _) = self.hemicubes.get_mut(&resolution).expect(missing);
+        if let Some(wanted) = wanted.as_deref_mut() {
+            wanted.clear();
+        }
+        match self {
+            Self::Contour(bsp) => image(view, bsp.scene(), wanted, || bsp.view(viewpoint, &domain)),
+            Self::ContourByBoxes(bvh) => image(view, bvh.scene(), wanted, || bvh.view(viewpoint, &domain)),
+            Self::Hemicube(hemicube) => {
                 let start = Instant::now();
-                let seen = hemicube.view(viewpoint, normal).map_err(failed)?;
+                let seen = black_box(hemicube.view(viewpoint, normal).map_err(failed)?);
                 let ms = since(start);
-                keep(wanted, black_box(seen.factors()).iter().copied());
+                keep(wanted, seen.factors().iter().copied());
                 Ok((ms, seen.stats().pixels))
             }
-            Method::Analytic { resolution } => {
-                let (hemicube, _) = self.hemicubes.get_mut(&resolution).expect(missing);
+            Self::Analytic(hemicube) => {
                 let start = Instant::now();
-                let seen = hemicube.analytic(viewpoint, normal).map_err(failed)?;
+                let seen = black_box(hemicube.analytic(viewpoint, normal).map_err(failed)?);
                 let ms = since(start);
-                keep(wanted, black_box(seen.factors()).iter().copied());
+                keep(wanted, seen.factors().iter().copied());
                 Ok((ms, seen.evaluations()))
             }
             #[cfg(feature = "rays")]
-            Method::Rays { rays } => {
-                let (tracer, _) = self.rays.as_mut().expect(missing);
+            Self::Rays(tracer, rays) => {
                 let start = Instant::now();
-                let seen = black_box(tracer.view(viewpoint, normal, rays, number as u64).map_err(failed)?);
+                let seen = black_box(tracer.view(viewpoint, normal, *rays, number as u64).map_err(failed)?);
                 let ms = since(start);
                 keep(wanted, seen.factors());
                 Ok((ms, 0))
             }
         }
     }
+}
 
-    /// The same by contour images. Taking an image apart again is part of its time.
-    fn image(
-        &self,
-        view: &Known,
-        wanted: Option<&mut Vec<f64>>,
-        see: impl Fn(&Self) -> Result<ContourImage, ViewError>,
-    ) -> Result<(f64, usize), CompareError> {
-        let number = view.number;
-        let start = Instant::now();
-        let image = see(self).map_err(|source| CompareError::Contour { view: number, source })?;
-        let sums = image.form_factors().ok_or(CompareError::NoNormal { view: number })?;
-        let cells = image.cell_count();
-        drop(image);
-        let ms = since(start);
-        let sums = black_box(sums);
-        if let Some(factors) = wanted {
-            dense(&sums, self.bsp.scene().polygon_count(), factors);
-        }
-        Ok((ms, cells))
+/// The same by a contour image. Taking the image apart again is part of its time.
+fn image(
+    view: &Known,
+    scene: &Scene,
+    wanted: Option<&mut Vec<f64>>,
+    see: impl Fn() -> Result<ContourImage, ViewError>,
+) -> Result<(f64, usize), CompareError> {
+    let number = view.number;
+    let start = Instant::now();
+    let image = see().map_err(|source| CompareError::Contour { view: number, source })?;
+    let sums = black_box(image.form_factors()).ok_or(CompareError::NoNormal { view: number })?;
+    let cells = image.cell_count();
+    drop(image);
+    let ms = since(start);
+    if let Some(factors) = wanted {
+        dense(&sums, scene.polygon_count(), factors);
     }
+    Ok((ms, cells))
 }
 
 fn since(start: Instant) -> f64 {
