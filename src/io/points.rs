@@ -77,7 +77,7 @@ fn point(line: usize, fields: &[&str]) -> Result<PointLine, String> {
         [numbers @ .., ""] if numbers.len() == 6 => (numbers, None),
         [numbers @ .., polygon] if numbers.len() == 6 => (numbers, Some(*polygon)),
         numbers if numbers.len() == 6 => (numbers, None),
-        _ => return Err(format!("it has {} fields; a line is x y z nx ny nz [polygon]", fields.len())),
+        _ => return Err(format!("x y z nx ny nz [polygon] are 6 or 7 fields, not {}", fields.len())),
     };
     let mut values = [0.0; 6];
     for (value, (field, column)) in values.iter_mut().zip(numbers.iter().zip(["x", "y", "z", "nx", "ny", "nz"])) {
@@ -121,12 +121,12 @@ mod tests {
         assert_eq!(faults(""), "p.csv: it has no points; a line is x y z nx ny nz [polygon]");
         assert_eq!(faults("x y z nx ny nz"), faults(""));
         let text = "1 2 3\n1,2,3,0,,1\n1 2 3 0 0 inf\n1 2 3 0 0 0\n1 2 3 0 0 1 -2\n1 2 3 0 0 1 2 3\nx 2 3 0 0 1\n0 0 0 0 0 1\n";
-        let expected = "p.csv:1: it has 3 fields; a line is x y z nx ny nz [polygon]\n\
+        let expected = "p.csv:1: x y z nx ny nz [polygon] are 6 or 7 fields, not 3\n\
             p.csv:2: ny is empty\n\
             p.csv:3: nz: `inf` is not a finite number\n\
             p.csv:4: the normal 0 0 0 has no direction\n\
             p.csv:5: `-2` is not the number of a polygon, counted from 0\n\
-            p.csv:6: it has 8 fields; a line is x y z nx ny nz [polygon]\n\
+            p.csv:6: x y z nx ny nz [polygon] are 6 or 7 fields, not 8\n\
             p.csv:7: x: `x` is not a number";
         assert_eq!(faults(text), expected);
     }

@@ -10,9 +10,10 @@ use crate::place::hemisphere;
 use crate::progress::Progress;
 use glam::DVec3;
 use nusselt::contour::{Domain, SurfaceError, Viewpoint};
-use nusselt::hemicube::{CompareError, Hemicube, Method, compare};
+use nusselt::hemicube::{BaselineError, CompareError, Hemicube, Method, compare};
 use nusselt::io::{PointLine, parse_points, read_points};
 use nusselt::scene::Scene;
+use std::fmt::Display;
 use std::io::Read;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
@@ -86,27 +87,29 @@ fn parse_rounds(text: &str) -> Result<NonZeroUsize, String> {
     count.ok_or_else(|| "it takes a whole number from 1 to 1000".to_owned())
 }
 
-/// The views, and for each the file and line that it comes from.
-struct Views {
-    views: Vec<(Viewpoint, Domain)>,
-    places: Vec<String>,
-}
-
 impl Compare {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
-        let points = self.points.as_deref().map(read).transpose()?;
+        let points = self.points()?;
         let (scene, load_s) = load(&self.scene, std::iter::empty(), &self.loading, common)?;
-        let Views { views, places } = match points {
-            Some(points) => self.stand_on_points(&scene, &points)?,
-            None => self.stand_on_eye(&scene)?,
-        };
+        let views = points.iter().map(|point| {
+            let view = stand(&scene, point, self.free);
+            view.map_err(|error| self.failed_at(point, &error))
+        });
+        let views = views.collect::<Result<Vec<_>, _>>()?;
         let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
         let methods = self.methods();
         let mut progress = Progress::new("views", views.len() * methods.len(), common.quiet);
         let rows = compare(&bsp, &views, &methods, self.rounds, |count| progress.add(count));
         drop(progress);
-        let rows = rows.map_err(|error| failed(&error, &places))?;
-        let report = report::Report::new(&scene, self.rounds.get(), load_s, bsp_s, &rows);
+        let rows = rows.map_err(|error| match &error {
+            CompareError::Contour { view, source } => self.failed_at(&points[*view], source),
+            CompareError::Baseline { view, source: source @ BaselineError::EyeTooFar } => {
+                self.failed_at(&points[*view], &format!("{source}; leave them out with --rays none"))
+            }
+            CompareError::Baseline { view, source } => self.failed_at(&points[*view], source),
+            error => Failure::Work(error.to_string()),
+        })?;
+        let report = report::Report::new(&scene, &views, self.rounds.get(), [load_s, bsp_s], &rows);
         if common.json {
             return print_json(&report);
         }
@@ -122,30 +125,32 @@ impl Compare {
         methods
     }
 
-    fn stand_on_points(&self, scene: &Scene, points: &[PointLine]) -> Result<Views, Failure> {
-        let file = self.points.as_deref().map(shown).unwrap_or_default();
-        let places: Vec<_> = points.iter().map(|point| format!("{file}:{}", point.line)).collect();
-        let stand = |point: &PointLine| match point.polygon {
-            Some(polygon) => {
-                let viewpoint = Viewpoint::on_surface_towards(scene, polygon, point.normal, point.point)?;
-                Ok((viewpoint, Domain::Above))
-            }
-            None => hemisphere(scene, point.point, point.normal, self.free),
-        };
-        let mut views = Vec::with_capacity(points.len());
-        for (point, place) in points.iter().zip(&places) {
-            let view = stand(point).map_err(|error: SurfaceError| Failure::Work(format!("{place}: {error}")))?;
-            views.push(view);
+    /// Where to look from.
+    fn points(&self) -> Result<Vec<PointLine>, Failure> {
+        match (&self.points, self.eye, self.normal) {
+            (Some(path), ..) => read(path),
+            (None, Some(point), Some(normal)) => Ok(vec![PointLine { line: 1, point, normal, polygon: None }]),
+            _ => Err(Failure::Usage("give --points, or --eye and --normal".to_owned())),
         }
-        Ok(Views { views, places })
     }
 
-    fn stand_on_eye(&self, scene: &Scene) -> Result<Views, Failure> {
-        let (Some(eye), Some(normal)) = (self.eye, self.normal) else {
-            return Err(Failure::Usage("give --points, or --eye and --normal".to_owned()));
-        };
-        let view = hemisphere(scene, eye, normal, self.free).map_err(|error| Failure::about(&self.scene, &error))?;
-        Ok(Views { views: vec![view], places: vec![self.scene.display().to_string()] })
+    /// Names the line of a point, or the scene for `--eye`.
+    fn failed_at(&self, point: &PointLine, error: &impl Display) -> Failure {
+        match &self.points {
+            Some(path) => Failure::Work(format!("{}:{}: {error}", shown(path), point.line)),
+            None => Failure::about(&self.scene, error),
+        }
+    }
+}
+
+/// On the polygon that the point names, on the side that its normal shows; otherwise where it is meant to be.
+fn stand(scene: &Scene, point: &PointLine, free: bool) -> Result<(Viewpoint, Domain), SurfaceError> {
+    match point.polygon {
+        Some(polygon) => {
+            let viewpoint = Viewpoint::on_surface_towards(scene, polygon, point.normal, point.point)?;
+            Ok((viewpoint, Domain::Above))
+        }
+        None => hemisphere(scene, point.point, point.normal, free),
     }
 }
 
@@ -170,14 +175,4 @@ fn read(path: &Path) -> Result<Vec<PointLine>, Failure> {
         read_points(path)
     };
     points.map_err(|error| Failure::Work(error.to_string()))
-}
-
-/// Named by the line of the point.
-fn failed(error: &CompareError, places: &[String]) -> Failure {
-    let (view, cause) = match error {
-        CompareError::Contour { view, source } => (*view, source.to_string()),
-        CompareError::Baseline { view, source } => (*view, format!("{source}; leave a method out with none")),
-        error => return Failure::Work(error.to_string()),
-    };
-    Failure::Work(format!("{}: {cause}", places[view]))
 }

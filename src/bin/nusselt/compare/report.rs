@@ -1,6 +1,7 @@
 //! The comparison as JSON and in words.
 
 use crate::summary::{Lines, Timing};
+use nusselt::contour::{Domain, Viewpoint};
 use nusselt::hemicube::{ComparisonRow, Deviations, Method};
 use nusselt::scene::Scene;
 use serde::Serialize;
@@ -15,6 +16,8 @@ pub(super) struct Report {
     schema: &'static str,
     polygons: usize,
     views: usize,
+    /// The polygon that each view stands on, if it does.
+    on: Vec<Option<u32>>,
     rounds: usize,
     /// Of the contour image.
     timing: Timing,
@@ -62,7 +65,13 @@ impl Errors {
 }
 
 impl Report {
-    pub(super) fn new(scene: &Scene, rounds: usize, load_s: f64, bsp_s: f64, rows: &[ComparisonRow]) -> Self {
+    pub(super) fn new(
+        scene: &Scene,
+        views: &[(Viewpoint, Domain)],
+        rounds: usize,
+        [load_s, bsp_s]: [f64; 2],
+        rows: &[ComparisonRow],
+    ) -> Self {
         let timing = |row: &ComparisonRow| {
             Timing::new(load_s, if row.method == Method::Contour { bsp_s } else { 0.0 }, &row.view_ms)
         };
@@ -86,17 +95,20 @@ impl Report {
         });
         let methods: Vec<Row> = methods.collect();
         // The first method is the contour image.
-        let contour: &[f64] = rows.first().map_or(&[], |row| &row.view_ms);
-        let timing = Timing::new(load_s, bsp_s, contour);
-        Self { schema: SCHEMA, polygons: scene.polygon_count(), views: contour.len(), rounds, timing, methods }
+        let timing = Timing::new(load_s, bsp_s, rows.first().map_or(&[], |row| &row.view_ms));
+        let on = views.iter().map(|(viewpoint, _)| viewpoint.surface().map(|(polygon, _)| polygon.0)).collect();
+        Self { schema: SCHEMA, polygons: scene.polygon_count(), views: views.len(), on, rounds, timing, methods }
     }
 
     /// A table; counts are for a view.
     pub(super) fn in_words(&self) -> String {
         let mut lines = Lines::default();
         lines.add("scene", format!("{} polygons", self.polygons));
-        lines
-            .add("views", format!("{}, one after the other; the shortest of {} times counts", self.views, self.rounds));
+        let on = self.on.iter().flatten().count();
+        lines.add(
+            "views",
+            format!("{}, {on} of them on a polygon; the shortest of {} times counts", self.views, self.rounds),
+        );
         lines.add("time", format!("load {:.3} s, BSP {:.3} s", self.timing.load_s, self.timing.bsp_s));
         lines.add("errors", "relative, of form factors above 1e-3 and, with 99% and median, above 1e-4");
         lines.add("counts", "lost of the polygons seen, and evaluations of form factors, for a view");
