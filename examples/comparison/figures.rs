@@ -19,71 +19,88 @@ const HEMICUBE: RGBColor = RGBColor(0, 114, 178);
 const ANALYTIC: RGBColor = RGBColor(0, 158, 115);
 const RAYS: RGBColor = RGBColor(120, 120, 120);
 
+/// Below the one resolution the report's hemicube was faster than its analytic method, above the other it was slower.
+const CROSSOVER_OF_THE_REPORT: [f64; 2] = [128.0, 512.0];
+/// The largest relative error of the report's hemicube at the higher resolution.
+const ERROR_OF_THE_REPORT: f64 = 0.01;
+
 const WIDTH: u32 = 1140;
 const HEIGHT: u32 = 420;
 
 pub(crate) fn draw(rooms: &[Room], folder: &Path) -> Outcome {
     std::fs::create_dir_all(folder)?;
-    figure(&folder.join("time.svg"), rooms, &time())?;
-    figure(&folder.join("error.svg"), rooms, &error())?;
-    figure(&folder.join("error-time.svg"), rooms, &error_by_time())
+    figure(&folder.join("comparison-time.svg"), rooms, &time())?;
+    figure(&folder.join("comparison-error.svg"), rooms, &error())?;
+    figure(&folder.join("comparison-error-by-time.svg"), rooms, &error_by_time())
 }
 
 /// What a figure shows in each of its panels.
 struct Plot {
     x: Axis,
     y: Axis,
-    /// Straight lines for the contour images: by their times, or where hemicubes take as long.
-    level: Level,
-    /// An error to compare with.
-    report: bool,
+    /// Straight lines for the contour images.
+    contours: Contours,
 }
 
 struct Axis {
     title: &'static str,
     range: (f64, f64),
+    /// Where its labels are.
+    labels: Vec<f64>,
     value: fn(&ComparisonRow) -> f64,
     label: fn(&f64) -> String,
 }
 
-enum Level {
-    TimeAcross,
-    TimeUpright,
-    CrossoverUpright,
+/// Which lines stand for the contour images.
+enum Contours {
+    /// Their times, across, with circles where hemicubes take as long.
+    TimesAcross,
+    /// Their times, upright.
+    TimesUpright,
+    /// The resolutions of hemicubes that take as long.
+    Crossovers,
 }
 
 fn resolution() -> Axis {
     Axis {
         title: "resolution (rays: of as many pixels)",
         range: (14.0, 2600.0),
+        labels: vec![16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0],
         value: pixels_across,
         label: |x| format!("{x:.0}"),
     }
 }
 
-fn milliseconds(title: &'static str) -> Axis {
-    Axis { title, range: (0.03, 200.0), value: ComparisonRow::median_ms, label: |x| format!("{x}") }
+fn milliseconds() -> Axis {
+    Axis {
+        title: "milliseconds a view (mean)",
+        range: (0.03, 200.0),
+        labels: vec![0.1, 1.0, 10.0, 100.0],
+        value: ComparisonRow::mean_ms,
+        label: |x| format!("{x}"),
+    }
 }
 
 fn worst() -> Axis {
     Axis {
         title: "worst relative error of factors > 1e-3",
         range: (0.005, 20.0),
+        labels: vec![0.01, 0.1, 1.0, 10.0],
         value: |row| row.above_1e3.quantile(1.0),
-        label: |x| format!("{}%", 100.0 * x),
+        label: |x| format!("{:.0}%", 100.0 * x),
     }
 }
 
 fn time() -> Plot {
-    Plot { x: resolution(), y: milliseconds("ms a view (median)"), level: Level::TimeAcross, report: false }
+    Plot { x: resolution(), y: milliseconds(), contours: Contours::TimesAcross }
 }
 
 fn error() -> Plot {
-    Plot { x: resolution(), y: worst(), level: Level::CrossoverUpright, report: true }
+    Plot { x: resolution(), y: worst(), contours: Contours::Crossovers }
 }
 
 fn error_by_time() -> Plot {
-    Plot { x: milliseconds("ms a view (median)"), y: worst(), level: Level::TimeUpright, report: true }
+    Plot { x: milliseconds(), y: worst(), contours: Contours::TimesUpright }
 }
 
 /// A hemicube of resolution r has 3 r^2 pixels; rays are put where it has as many.
@@ -108,13 +125,20 @@ fn figure(path: &Path, rooms: &[Room], plot: &Plot) -> Outcome {
 }
 
 fn draw_panel(panel: &Area<'_>, room: &Room, plot: &Plot) -> Outcome {
-    let Plot { x, y, .. } = plot;
+    let Plot { x, y, contours } = plot;
+    let [on_x, on_y] = [x, y].map(|axis| (axis.range.0..axis.range.1).log_scale().with_key_points(axis.labels.clone()));
     let mut chart = ChartBuilder::on(panel)
-        .caption(format!("{} polygons", room.polygons), ("sans-serif", 18))
+        .caption(format!("room of {} polygons", grouped(room.polygons)), ("sans-serif", 17))
         .margin(8)
         .x_label_area_size(42)
         .y_label_area_size(62)
-        .build_cartesian_2d((x.range.0..x.range.1).log_scale(), (y.range.0..y.range.1).log_scale())?;
+        .build_cartesian_2d(on_x, on_y)?;
+    let across = |at: f64| [(x.range.0, at), (x.range.1, at)];
+    let upright = |at: f64| [(at, y.range.0), (at, y.range.1)];
+    if !matches!(contours, Contours::TimesUpright) {
+        let [low, high] = CROSSOVER_OF_THE_REPORT;
+        chart.draw_series([Rectangle::new([(low, y.range.0), (high, y.range.1)], BLACK.mix(0.07).filled())])?;
+    }
     chart
         .configure_mesh()
         .x_desc(x.title)
@@ -122,25 +146,24 @@ fn draw_panel(panel: &Area<'_>, room: &Room, plot: &Plot) -> Outcome {
         .x_label_formatter(&x.label)
         .y_label_formatter(&y.label)
         .bold_line_style(BLACK.mix(0.15))
-        .light_line_style(BLACK.mix(0.05))
+        .light_line_style(TRANSPARENT)
         .label_style(("sans-serif", 13))
         .draw()?;
-    let across = |at: f64| [(x.range.0, at), (x.range.1, at)];
-    let upright = |at: f64| [(at, y.range.0), (at, y.range.1)];
-    if plot.report {
-        chart.draw_series(DashedLineSeries::new(across(0.01), 3, 4, BLACK.mix(0.6).into()))?;
+    if !matches!(contours, Contours::TimesAcross) {
+        chart.draw_series(DashedLineSeries::new(across(ERROR_OF_THE_REPORT), 3, 4, BLACK.mix(0.6).into()))?;
     }
     for (method, colour) in [(Method::Contour, CONTOUR), (Method::ContourByBoxes, BOXES)] {
-        let Some(ms) = room.median_ms(method) else { continue };
-        let ends = match plot.level {
-            Level::TimeAcross => Some(across(ms)),
-            Level::TimeUpright => Some(upright(ms)),
-            Level::CrossoverUpright => room.crossover(method).map(upright),
+        let Some(ms) = room.mean_ms(method) else { continue };
+        let crossover = room.crossover(method);
+        let ends = match contours {
+            Contours::TimesAcross => Some(across(ms)),
+            Contours::TimesUpright => Some(upright(ms)),
+            Contours::Crossovers => crossover.map(upright),
         };
         if let Some(ends) = ends {
             chart.draw_series(LineSeries::new(ends, colour.stroke_width(2)))?;
         }
-        if let (Level::TimeAcross, Some(resolution)) = (&plot.level, room.crossover(method)) {
+        if let (Contours::TimesAcross, Some(resolution)) = (contours, crossover) {
             chart.draw_series([Circle::new((resolution, ms), 6, colour.stroke_width(2))])?;
         }
     }
@@ -168,25 +191,41 @@ fn series() -> [(Wanted, RGBColor); 3] {
 }
 
 fn draw_legend(legend: &Area<'_>, plot: &Plot) -> Outcome {
-    let contour = match plot.level {
-        Level::TimeAcross | Level::TimeUpright => ["contour by 3D BSP (exact)", "contour by boxes (exact)"],
-        Level::CrossoverUpright => ["as fast as the contour by 3D BSP", "as fast as the contour by boxes"],
+    let (contours, report) = match plot.contours {
+        Contours::TimesAcross => (["contour by 3D BSP (exact)", "contour by boxes (exact)"], "crossover in the report"),
+        Contours::TimesUpright => {
+            (["contour by 3D BSP (exact)", "contour by boxes (exact)"], "1%: error in the report")
+        }
+        Contours::Crossovers => {
+            (["as fast as contour by 3D BSP", "as fast as contour by boxes"], "crossover, 1% in the report")
+        }
     };
-    let mut entries = vec![
-        (contour[0], CONTOUR.to_rgba()),
-        (contour[1], BOXES.to_rgba()),
+    let entries = [
+        (contours[0], CONTOUR.to_rgba()),
+        (contours[1], BOXES.to_rgba()),
         ("hemicube", HEMICUBE.to_rgba()),
         ("analytic, z-buffer", ANALYTIC.to_rgba()),
         ("rays", RAYS.to_rgba()),
+        (report, BLACK.mix(0.2)),
     ];
-    if plot.report {
-        entries.push(("1%, the report's", BLACK.mix(0.6)));
-    }
-    let mut left = 70;
+    let mut left = 66;
     for (name, colour) in entries {
-        legend.draw(&PathElement::new([(left, 14), (left + 26, 14)], colour.stroke_width(3)))?;
-        legend.draw(&Text::new(name, (left + 34, 8), ("sans-serif", 14)))?;
-        left += 60 + 7 * name.len() as i32;
+        legend.draw(&PathElement::new([(left, 14), (left + 22, 14)], colour.stroke_width(4)))?;
+        legend.draw(&Text::new(name, (left + 28, 8), ("sans-serif", 13)))?;
+        left += 52 + 13 * name.len() as i32 / 2;
     }
     Ok(())
+}
+
+/// With a comma before each three digits.
+fn grouped(number: usize) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (k, digit) in digits.chars().enumerate() {
+        if k > 0 && (digits.len() - k).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
 }

@@ -1,8 +1,7 @@
 //! The measured part of docs/comparison.md and its figures: `cargo run --release --example comparison`.
 //!
 //! Hemisphere views, normal up, of the generated room from points inside, by all methods, on one thread. Rewrites what is between the marks in
-//! docs/comparison.md, and docs/figures/*.svg. With another folder for docs as argument, in which comparison.md need not be,
-//! the text goes to standard output instead.
+//! docs/comparison.md, and docs/images/comparison-*.svg. Another folder in their place, with a comparison.md in it, may be named.
 
 mod figures;
 mod tables;
@@ -16,7 +15,7 @@ use nusselt::samples::{Kind, generate};
 use std::error::Error;
 use std::io::Write;
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// The sizes of the room.
@@ -36,19 +35,16 @@ struct Room {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let docs = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("docs"), PathBuf::from);
+    let own = || Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
+    let docs = std::env::args_os().nth(1).map_or_else(own, PathBuf::from);
+    let page = docs.join("comparison.md");
+    // Before anything is measured.
+    let (before, after) = tables::around_marks(&std::fs::read_to_string(&page)?)?;
     let start = Instant::now();
     let rooms = POLYGONS.map(measure).into_iter().collect::<Result<Vec<_>, _>>()?;
-    figures::draw(&rooms, &docs.join("figures"))?;
+    figures::draw(&rooms, &docs.join("images"))?;
     let text = tables::text(&rooms);
-    let page = docs.join("comparison.md");
-    match std::fs::read_to_string(&page) {
-        Ok(old) => {
-            let new = tables::between_marks(&old, &text).ok_or("docs/comparison.md has lost its marks")?;
-            atomic_write(&page, |file| file.write_all(new.as_bytes()))?;
-        }
-        Err(_) => println!("{text}"),
-    }
+    atomic_write(&page, |file| write!(file, "{before}\n{text}\n{after}"))?;
     eprintln!("{:.0} s", start.elapsed().as_secs_f64());
     Ok(())
 }

@@ -4,14 +4,16 @@ use crate::{ROUNDS, Room, VIEWS};
 use nusselt::hemicube::{ComparisonRow, Method};
 use std::fmt::Write;
 
+/// Above this resolution the report's analytic method was faster than the hemicube.
+const REPORT: usize = 512;
 const BEGIN: &str = "<!-- measured: begin -->\n";
 const END: &str = "<!-- measured: end -->";
 
-/// A page with another text between its marks.
-pub(crate) fn between_marks(page: &str, text: &str) -> Option<String> {
-    let (before, rest) = page.split_once(BEGIN)?;
-    let (_, after) = rest.split_once(END)?;
-    Some(format!("{before}{BEGIN}\n{text}\n{END}{after}"))
+/// What is before the text between the marks of a page, and what is after it, with the marks.
+pub(crate) fn around_marks(page: &str) -> Result<(String, String), &'static str> {
+    let parts = page.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
+    let (before, after) = parts.ok_or("comparison.md has lost its marks")?;
+    Ok((format!("{before}{BEGIN}"), format!("{END}{after}")))
 }
 
 /// Writing to a string does not fail.
@@ -25,9 +27,9 @@ pub(crate) fn text(rooms: &[Room]) -> String {
     line!(text, "### The crossover\n");
     line!(
         text,
-        "| polygons | contour by | ms | as fast as a hemicube of | whose worst error > 1e-3 is | worst > 1e-4 | lost |"
+        "| polygons | contour by | ms | times a hemicube of {REPORT} | as fast as one of | its worst error > 1e-3 | worst > 1e-4 | lost |"
     );
-    line!(text, "| ---: | --- | ---: | ---: | ---: | ---: | ---: |");
+    line!(text, "| ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: |");
     for room in rooms {
         for (method, name) in [(Method::Contour, "3D BSP"), (Method::ContourByBoxes, "boxes")] {
             crossover(&mut text, room, method, name);
@@ -65,60 +67,65 @@ pub(crate) fn text(rooms: &[Room]) -> String {
 }
 
 fn one_row(text: &mut String, polygons: usize, row: &ComparisonRow) {
-    let views = row.view_ms.len();
+    let views = row.view_ms.len() as f64;
     let [large, small] = [&row.above_1e3, &row.above_1e4];
+    let [worst_large, worst, most, median] = [(large, 1.0), (small, 1.0), (small, 0.99), (small, 0.5)]
+        .map(|(errors, share)| percent(errors.quantile(share)));
     line!(
         text,
-        "| {polygons} | {} | {:.3} | {:.3} | {:.2} | {:.2e} | {:.2e} | {:.2e} | {:.2e} | {} | {} | {} |",
+        "| {polygons} | {} | {:.3} | {:.3} | {:.3} | {worst_large} | {worst} | {most} | {median} | {:.1} | {:.0} | {:.0} |",
         row.method,
         row.mean_ms(),
         row.median_ms(),
         row.max_ms(),
-        large.quantile(1.0),
-        small.quantile(1.0),
-        small.quantile(0.99),
-        small.quantile(0.5),
-        small.lost() / views,
-        small.visible() / views,
-        row.evaluations / views
+        small.lost() as f64 / views,
+        small.visible() as f64 / views,
+        row.evaluations as f64 / views
     );
+}
+
+fn percent(error: f64) -> String {
+    match 100.0 * error {
+        0.0 => "0".to_owned(),
+        rounding if rounding < 1e-6 => "rounding".to_owned(),
+        small if small < 10.0 => format!("{small:.2}%"),
+        large => format!("{large:.0}%"),
+    }
 }
 
 /// Where the line of the hemicubes crosses the time of a contour image.
 fn crossover(text: &mut String, room: &Room, method: Method, name: &str) {
-    let Some(ms) = room.median_ms(method) else { return };
-    let hemicubes = room.hemicubes();
-    let (resolution, errors) = match room.crossover(method) {
-        Some(resolution) => (
-            format!("{resolution:.0}"),
-            // Those of the next resolution that was measured: the error at the crossover is no less.
-            hemicubes.iter().find(|(size, _)| *size as f64 >= resolution).map(|(_, row)| *row),
-        ),
-        None if hemicubes.first().is_some_and(|(_, row)| row.median_ms() > ms) => {
-            (format!("less than {}", hemicubes[0].0), hemicubes.first().map(|(_, row)| *row))
-        }
-        None => {
-            let last = hemicubes.last();
-            (format!("more than {}", last.map_or(0, |(size, _)| *size)), last.map(|(_, row)| *row))
-        }
+    let (Some(ms), Some(reported)) = (room.mean_ms(method), room.mean_ms(Method::Hemicube { resolution: REPORT }))
+    else {
+        return;
     };
-    let Some(row) = errors else { return };
-    let at = row.method.resolution().unwrap_or_default();
-    let percent = |error: f64| format!("{:.1}% at {at}", 100.0 * error);
+    let hemicubes = room.hemicubes();
+    // The errors are those of the next resolution that was measured: those at the crossover are larger.
+    let (Some(first), Some(last)) = (hemicubes.first(), hemicubes.last()) else { return };
+    let (as_fast, (at, row)) = match room.crossover(method) {
+        Some(resolution) => {
+            let next = hemicubes.iter().find(|(size, _)| *size as f64 >= resolution).unwrap_or(last);
+            (format!("{resolution:.0}"), next)
+        }
+        None if first.1.mean_ms() > ms => (format!("less than {}", first.0), first),
+        None => (format!("more than {}", last.0), last),
+    };
+    let errors = [&row.above_1e3, &row.above_1e4].map(|errors| percent(errors.quantile(1.0)));
     let lost = 100.0 * row.above_1e4.lost() as f64 / row.above_1e4.visible() as f64;
     line!(
         text,
-        "| {} | {name} | {ms:.3} | {resolution} | {} | {} | {lost:.1}% at {at} |",
+        "| {} | {name} | {ms:.2} | {:.2} | {as_fast} | {} at {at} | {} at {at} | {lost:.1}% at {at} |",
         room.polygons,
-        percent(row.above_1e3.quantile(1.0)),
-        percent(row.above_1e4.quantile(1.0))
+        ms / reported,
+        errors[0],
+        errors[1]
     );
 }
 
 impl Room {
-    /// The median time of a view.
-    pub(crate) fn median_ms(&self, method: Method) -> Option<f64> {
-        self.rows.iter().find(|row| row.method == method).map(ComparisonRow::median_ms)
+    /// The mean time of a view.
+    pub(crate) fn mean_ms(&self, method: Method) -> Option<f64> {
+        self.rows.iter().find(|row| row.method == method).map(ComparisonRow::mean_ms)
     }
 
     /// By ascending resolution.
@@ -130,12 +137,12 @@ impl Room {
         hemicubes.collect()
     }
 
-    /// The resolution at which a hemicube takes as long as that method, by medians, between those measured: time is taken to be a power of
+    /// The resolution at which a hemicube takes as long as that method, by means, between those measured: time is taken to be a power of
     /// the resolution there.
     pub(crate) fn crossover(&self, method: Method) -> Option<f64> {
-        let ms = self.median_ms(method)?;
+        let ms = self.mean_ms(method)?;
         self.hemicubes().windows(2).rev().find_map(|pair| {
-            let [(a, low), (b, high)] = [pair[0], pair[1]].map(|(size, row)| (size as f64, row.median_ms()));
+            let [(a, low), (b, high)] = [pair[0], pair[1]].map(|(size, row)| (size as f64, row.mean_ms()));
             (low <= ms && ms < high).then(|| a * (b / a).powf((ms / low).ln() / (high / low).ln()))
         })
     }
