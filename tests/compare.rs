@@ -155,7 +155,7 @@ fn errors_losses_and_evaluations_are_those_of_the_methods() {
     ];
     let mut done = 0;
     let rows = compare(&bsp, &views, &methods, ROUNDS, |count| done += count).expect("good methods");
-    assert_eq!(done, views.len() * methods.len());
+    assert_eq!(done, views.len() * methods.len() * 2, "two rounds");
     for (((row, method), found), evaluations) in rows.iter().zip(methods).zip(&found).zip(evaluations) {
         assert_eq!(row.method, method);
         check_errors(row, &exact, found);

@@ -191,28 +191,28 @@ fn series() -> [(Wanted, RGBColor); 3] {
 }
 
 fn draw_legend(legend: &Area<'_>, plot: &Plot) -> Outcome {
-    let (contours, report) = match plot.contours {
-        Contours::TimesAcross => (["contour by 3D BSP (exact)", "contour by boxes (exact)"], "crossover in the report"),
-        Contours::TimesUpright => {
-            (["contour by 3D BSP (exact)", "contour by boxes (exact)"], "1%: error in the report")
-        }
-        Contours::Crossovers => {
-            (["as fast as contour by 3D BSP", "as fast as contour by boxes"], "crossover, 1% in the report")
-        }
+    let contours = match plot.contours {
+        Contours::TimesAcross | Contours::TimesUpright => ["contour by 3D BSP (exact)", "contour by boxes (exact)"],
+        Contours::Crossovers => ["as fast as contour by 3D BSP", "as fast as contour by boxes"],
     };
-    let entries = [
-        (contours[0], CONTOUR.to_rgba()),
-        (contours[1], BOXES.to_rgba()),
-        ("hemicube", HEMICUBE.to_rgba()),
-        ("analytic, z-buffer", ANALYTIC.to_rgba()),
-        ("rays", RAYS.to_rgba()),
-        (report, BLACK.mix(0.2)),
+    let mut entries = vec![
+        (contours[0], CONTOUR.stroke_width(4)),
+        (contours[1], BOXES.stroke_width(4)),
+        ("hemicube", HEMICUBE.stroke_width(4)),
+        ("analytic, z-buffer", ANALYTIC.stroke_width(4)),
+        ("rays", RAYS.stroke_width(4)),
     ];
+    if !matches!(plot.contours, Contours::TimesUpright) {
+        entries.push(("crossover in the report", BLACK.mix(0.1).stroke_width(12)));
+    }
+    if !matches!(plot.contours, Contours::TimesAcross) {
+        entries.push(("1%: error in the report", BLACK.mix(0.6).stroke_width(1)));
+    }
     let mut left = 66;
-    for (name, colour) in entries {
-        legend.draw(&PathElement::new([(left, 14), (left + 22, 14)], colour.stroke_width(4)))?;
+    for (name, line) in entries {
+        legend.draw(&PathElement::new([(left, 14), (left + 22, 14)], line))?;
         legend.draw(&Text::new(name, (left + 28, 8), ("sans-serif", 13)))?;
-        left += 52 + 13 * name.len() as i32 / 2;
+        left += 46 + 56 * name.len() as i32 / 10;
     }
     Ok(())
 }

@@ -23,7 +23,7 @@ const POLYGONS: [usize; 3] = [1_000, 10_000, 50_000];
 /// Views of each; the same points for every method and machine.
 const VIEWS: usize = 20;
 /// Each view is taken as often, in turn with the others, and the shortest time counts.
-const ROUNDS: usize = 5;
+const ROUNDS: usize = 9;
 const RESOLUTIONS: [usize; 7] = [32, 64, 128, 256, 512, 1024, 2048];
 const RAYS: [u32; 3] = [1_000, 10_000, 100_000];
 
@@ -67,7 +67,7 @@ fn measure(polygons: usize) -> Result<Room, Box<dyn Error>> {
     let mut done = 0;
     let rows = compare(&bsp, &views, &methods, rounds, |count| {
         done += count;
-        eprintln!("{polygons} polygons: {done} of {} views", views.len() * methods.len());
+        eprintln!("{polygons} polygons: {done} of {} views", views.len() * methods.len() * ROUNDS);
     })?;
     Ok(Room { polygons, bsp_s, rows })
 }

@@ -147,16 +147,16 @@ pub enum CompareError {
     },
 }
 
-/// So many views are taken by one method before the next one takes them: few enough that the methods share the ups and downs of a busy
-/// machine, and that what is known of the views needs little memory.
+/// So many views are taken in all rounds before the next ones: few enough that what is known of them needs little memory.
 const BLOCK: usize = 20;
 
 /// Takes all views with every method, `rounds` times each on one thread, and compares form factors with those of the contour image
 /// in the order of `bsp`, which are exact up to the rounding of their sums if its epsilon is 0.
 ///
-/// A method's views are timed in turn, so that none has just been taken when it is taken again; what a method does once for
-/// the scene is timed apart. Factors are looked at outside of the times. `done` is told the number of views taken by one
-/// method in all rounds as they are completed; there are `views.len() * methods.len()` in all.
+/// Some views are taken by all methods in turn, then by all of them again, so that none has just been taken by a method when it takes it
+/// again, and a busy moment of the machine does not meet all times of one method; what a method does once for the scene is timed
+/// apart. Factors are looked at outside of the times. `done` is told how many more views were taken; there are
+/// `views.len() * methods.len() * rounds` in all.
 ///
 /// Memory: about 36 bytes for each pixel of the top face of every hemicube asked for, and, however many views there are, a few
 /// megabytes a method, what is seen in 20 views, and 8 bytes for the time of each view and method.
@@ -193,10 +193,12 @@ pub fn compare(
     for (block, views) in views.chunks(BLOCK).enumerate() {
         let known = views.iter().enumerate().map(|(k, view)| Known::new(bsp, view, block * BLOCK + k));
         let known = known.collect::<Result<Vec<_>, _>>()?;
-        for (row, (tool, _)) in rows.iter_mut().zip(&mut tools) {
-            let mut fastest = vec![f64::INFINITY; known.len()];
-            for round in 0..rounds.get() {
-                for (known, fastest) in known.iter().zip(&mut fastest) {
+        for row in &mut rows {
+            row.view_ms.resize(row.view_ms.len() + known.len(), f64::INFINITY);
+        }
+        for round in 0..rounds.get() {
+            for (row, (tool, _)) in rows.iter_mut().zip(&mut tools) {
+                for (known, fastest) in known.iter().zip(&mut row.view_ms[block * BLOCK..]) {
                     let wanted = (round == 0).then_some(&mut factors);
                     let (ms, evaluations) = tool.take(known, wanted)?;
                     *fastest = fastest.min(ms);
@@ -208,9 +210,8 @@ pub fn compare(
                         }
                     }
                 }
+                done(known.len());
             }
-            row.view_ms.extend(fastest);
-            done(known.len());
         }
     }
     Ok(rows)

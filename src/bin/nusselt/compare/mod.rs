@@ -98,7 +98,7 @@ impl Compare {
         let views = views.collect::<Result<Vec<_>, _>>()?;
         let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
         let methods = self.methods();
-        let mut progress = Progress::new("views", views.len() * methods.len(), common.quiet);
+        let mut progress = Progress::new("views", views.len() * methods.len() * self.rounds.get(), common.quiet);
         let rows = compare(&bsp, &views, &methods, self.rounds, |count| progress.add(count));
         drop(progress);
         let rows = rows.map_err(|error| match &error {
