@@ -329,7 +329,12 @@ fn outputs_never_replace_what_is_read() {
 #[test]
 fn every_json_summary_carries_timing() {
     let folder = Folder::new("timing");
-    for line in ["info box.obj", "scene room --polygons 100 -o x.obj", "contour box.obj --eye 1,2,3 --sphere"] {
+    for line in [
+        "info box.obj",
+        "scene room --polygons 100 -o x.obj",
+        "contour box.obj --eye 1,2,3 --sphere",
+        "compare box.obj --eye 1,2,3 --normal 0,0,1 --resolutions 16 --rays 10",
+    ] {
         let summary: Value = serde_json::from_str(&folder.run(&format!("{line} --json"), 0)).expect("JSON");
         for key in ["load_s", "bsp_s", "views", "view_ms_mean", "view_ms_max", "threads"] {
             assert!(summary["timing"][key].as_f64().expect("a number") >= 0.0, "{line}: {key}");
@@ -512,7 +517,7 @@ fn help_has_an_example_for_every_command() {
     let folder = Folder::new("help");
     assert!(folder.run("--help", 0).contains("contour"));
     assert!(folder.run("--version", 0).starts_with("nusselt 0."));
-    for command in ["info", "contour", "verify", "scene"] {
+    for command in ["info", "contour", "compare", "verify", "scene"] {
         let help = folder.run(&format!("{command} --help"), 0);
         assert!(help.contains("Example") && help.contains(&format!("nusselt {command} ")), "{command}");
     }

@@ -66,6 +66,23 @@ impl Viewpoint {
         Ok(Self::at(scene, &foot, side))
     }
 
+    /// The same on the side of the polygon, at the piece nearest to `near`, that shows in the direction of `normal`, of any length; on the
+    /// front if the normal lies in its plane.
+    ///
+    /// # Errors
+    /// As [`Viewpoint::on_surface`].
+    pub fn on_surface_towards(
+        scene: &Scene,
+        polygon: PolygonId,
+        normal: DVec3,
+        near: DVec3,
+    ) -> Result<Self, SurfaceError> {
+        let front = Self::on_surface(scene, polygon, Side::Front, near)?;
+        let towards = |(piece, _, _)| unit_normal(scene, scene.piece(piece)).dot(normal / normal.abs().max_element());
+        let side = if front.surface.map(towards) < Some(0.0) { Side::Back } else { Side::Front };
+        if side == Side::Front { Ok(front) } else { Self::on_surface(scene, polygon, side, near) }
+    }
+
     /// The same on one piece of a polygon.
     ///
     /// # Errors

@@ -5,6 +5,8 @@
 //!   Rushmeier and Winget 1989).
 //! - `Rays`, with the feature `rays`: the share of cosine-distributed rays that meet a polygon.
 //!
+//! [`compare`] takes the same views with all of them and with the contour image, and tells times and errors.
+//!
 //! They are approximations, made as fast as they can well be, so that a comparison with them is worth
 //! something. What was and what was not optimised: `docs/comparison.md`.
 //!
@@ -12,6 +14,7 @@
 //! H. Rushmeier, J. Winget, *Improving Radiosity Solutions Through the Use of Analytically Determined Form-Factors*, SIGGRAPH 1989.
 
 mod analytic;
+mod compare;
 mod delta;
 mod deviations;
 mod error;
@@ -24,6 +27,7 @@ mod runs;
 mod view;
 
 pub use analytic::AnalyticView;
+pub use compare::{CompareError, ComparisonRow, Method, compare};
 pub use deviations::Deviations;
 pub use error::BaselineError;
 pub use face::Face;

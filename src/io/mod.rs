@@ -24,6 +24,7 @@ pub mod mtl;
 mod number;
 pub mod obj;
 pub mod ply;
+mod points;
 pub mod stl;
 mod svg;
 #[cfg(any(feature = "cityjson", feature = "gltf", feature = "json"))]
@@ -42,6 +43,7 @@ pub use contour_json::{
 pub use error::{Fault, Faults, Place, ReadError};
 #[cfg(feature = "json")]
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
+pub use points::{PointLine, parse_points, read_points};
 pub use svg::{SvgOptions, write_svg};
 pub use visible_obj::{fragment_groups, visible_groups};
 

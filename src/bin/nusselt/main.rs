@@ -1,11 +1,14 @@
 //! The command line program `nusselt`.
 
 mod args;
+mod compare;
 mod contour;
 mod failure;
 mod info;
 mod input;
 mod output;
+mod place;
+mod progress;
 mod proof;
 mod repairs;
 mod scene;
@@ -30,6 +33,7 @@ struct Program {
 enum Command {
     Info(info::Info),
     Contour(contour::Contour),
+    Compare(compare::Compare),
     Verify(verify::Verify),
     Scene(scene::Scene),
 }
@@ -39,6 +43,7 @@ impl Command {
         match self {
             Self::Info(command) => command.run(common),
             Self::Contour(command) => command.run(common),
+            Self::Compare(command) => command.run(common),
             Self::Verify(command) => command.run(common),
             Self::Scene(command) => command.run(common),
         }

@@ -218,7 +218,7 @@ impl Projector {
                 continue;
             }
             // A step taken whole may round to another point than its end, and break the line there.
-            let [p, q] = [low, high].map(|t| if t == 1.0 { pair[1] } else { pair[0] + step * t });
+            let [p, q] = [low, high].map(|t| if t < 1.0 { pair[0] + step * t } else { pair[1] });
             match lines.last_mut() {
                 Some(last) if last.last() == Some(&p) => last.push(q),
                 _ => lines.push(vec![p, q]),

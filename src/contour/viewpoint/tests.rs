@@ -77,3 +77,35 @@ fn the_eye_leaves_its_place_no_further_than_it_must() {
     }
     assert!(left > 60 && far > 10, "few places are exactly in a plane: {left}, {far}");
 }
+
+#[test]
+fn a_normal_tells_the_side_of_the_nearest_piece() {
+    // A square folded along its diagonal into a tent: its pieces face up and to the left, and up and to the right.
+    let vertices = [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0], [0.0, 2.0, 0.0], [-1.0, 1.0, 1.0]];
+    let scene =
+        Scene::builder().mesh(&vertices, &[vec![0, 1, 2, 3]], Material::new("m")).build().expect("two triangles");
+    assert_eq!(scene.piece_count(), 2);
+    let polygon = PolygonId(0);
+    let side = |normal: DVec3, near: DVec3| {
+        let viewpoint = Viewpoint::on_surface_towards(&scene, polygon, normal, near).expect("a polygon with area");
+        let (piece, side) = viewpoint.surface_piece().expect("on a surface");
+        assert_eq!(Ok(viewpoint), Viewpoint::on_surface(&scene, polygon, side, near));
+        let facing = unit_normal(&scene, scene.piece(piece));
+        assert!(facing.dot(normal) * if side == Side::Front { 1.0 } else { -1.0 } >= 0.0, "{normal} {facing}");
+        side
+    };
+    let [near_low, near_high] = [DVec3::new(0.9, 1.0, 1.0), DVec3::new(-0.9, 1.0, 1.0)];
+    let front = side(DVec3::Z, near_low);
+    for near in [near_low, near_high] {
+        for scale in [1.0, 1e300, 5e-324] {
+            assert_eq!(side(DVec3::Z * scale, near), front);
+            assert_ne!(side(DVec3::NEG_Z * scale, near), front);
+        }
+    }
+    // The same normal is in front of one piece and behind the other.
+    assert_ne!(side(DVec3::X, near_low), side(DVec3::X, near_high));
+    // One that lies in the plane does not tell.
+    assert_eq!(side(DVec3::Y, near_low), Side::Front);
+    let missing = Viewpoint::on_surface_towards(&scene, PolygonId(1), DVec3::Z, near_low);
+    assert!(matches!(missing, Err(SurfaceError::UnknownPolygon { .. })));
+}

@@ -2,6 +2,7 @@
 
 use super::Contour;
 use crate::failure::Failure;
+use crate::place::hemisphere;
 use nusselt::contour::{Domain, SurfaceError, Viewpoint};
 use nusselt::scene::{PolygonId, Scene, Side};
 
@@ -14,14 +15,7 @@ impl Contour {
         let Some(normal) = self.normal else {
             return Ok((Viewpoint::free(self.eye), Domain::Sphere));
         };
-        let surface = if self.free { None } else { Viewpoint::surface_at(scene, self.eye, normal) };
-        match surface {
-            Some((piece, side)) => {
-                let viewpoint = Viewpoint::on_piece(scene, piece, side, self.eye);
-                Ok((viewpoint.map_err(|error| Failure::about(&self.scene, &error))?, Domain::Above))
-            }
-            None => Ok((Viewpoint::free(self.eye), Domain::Hemisphere(normal))),
-        }
+        hemisphere(scene, self.eye, normal, self.free).map_err(|error| Failure::about(&self.scene, &error))
     }
 
     fn on_polygon(&self, scene: &Scene, polygon: PolygonId, side: Side) -> Result<Viewpoint, Failure> {

@@ -1,0 +1,141 @@
+//! The comparison as JSON and in words.
+
+use crate::summary::{Lines, Timing};
+use nusselt::contour::{Domain, Viewpoint};
+use nusselt::hemicube::{ComparisonRow, Deviations, Method};
+use nusselt::scene::Scene;
+use serde::Serialize;
+use std::fmt::Write;
+
+/// The schema of what `--json` prints.
+const SCHEMA: &str = "nusselt.compare/1";
+
+/// What `--json` prints.
+#[derive(Serialize)]
+pub(super) struct Report {
+    schema: &'static str,
+    polygons: usize,
+    views: usize,
+    /// The polygon that each view stands on, if it does.
+    on: Vec<Option<u32>>,
+    rounds: usize,
+    /// Of the contour image.
+    timing: Timing,
+    methods: Vec<Row>,
+}
+
+/// One method. Counts are over all views.
+#[derive(Serialize)]
+struct Row {
+    method: &'static str,
+    /// Pixels along an edge of a hemicube's top face, or the number of rays.
+    resolution: Option<usize>,
+    #[serde(flatten)]
+    timing: Timing,
+    view_ms_median: f64,
+    /// For what is made once a scene, without the 3D BSP.
+    setup_s: f64,
+    /// Relative errors of form factors above 1e-4.
+    max_error: f64,
+    p99_error: f64,
+    median_error: f64,
+    /// Polygons that are seen and have the form factor 0, of how many that are seen.
+    lost: usize,
+    visible: usize,
+    /// Of form factors.
+    evaluations: usize,
+    /// Apart for form factors above 1e-3 and 1e-4.
+    errors: [Errors; 2],
+}
+
+#[derive(Serialize)]
+struct Errors {
+    above: f64,
+    factors: usize,
+    max_error: f64,
+    p99_error: f64,
+    median_error: f64,
+}
+
+impl Errors {
+    fn new(above: f64, deviations: &Deviations) -> Self {
+        let [max_error, p99_error, median_error] = [1.0, 0.99, 0.5].map(|share| deviations.quantile(share));
+        Self { above, factors: deviations.count(), max_error, p99_error, median_error }
+    }
+}
+
+impl Report {
+    pub(super) fn new(
+        scene: &Scene,
+        views: &[(Viewpoint, Domain)],
+        rounds: usize,
+        [load_s, bsp_s]: [f64; 2],
+        rows: &[ComparisonRow],
+    ) -> Self {
+        let timing = |row: &ComparisonRow| {
+            Timing::new(load_s, if row.method == Method::Contour { bsp_s } else { 0.0 }, &row.view_ms)
+        };
+        let methods = rows.iter().map(|row| {
+            let errors = [Errors::new(1e-3, &row.above_1e3), Errors::new(1e-4, &row.above_1e4)];
+            let Errors { max_error, p99_error, median_error, .. } = errors[1];
+            Row {
+                method: row.method.name(),
+                resolution: row.method.resolution(),
+                timing: timing(row),
+                view_ms_median: row.median_ms(),
+                setup_s: row.setup_s,
+                max_error,
+                p99_error,
+                median_error,
+                lost: row.above_1e4.lost(),
+                visible: row.above_1e4.visible(),
+                evaluations: row.evaluations,
+                errors,
+            }
+        });
+        let methods: Vec<Row> = methods.collect();
+        // The first method is the contour image.
+        let timing = Timing::new(load_s, bsp_s, rows.first().map_or(&[], |row| &row.view_ms));
+        let on = views.iter().map(|(viewpoint, _)| viewpoint.surface().map(|(polygon, _)| polygon.0)).collect();
+        Self { schema: SCHEMA, polygons: scene.polygon_count(), views: views.len(), on, rounds, timing, methods }
+    }
+
+    /// A table; counts are for a view.
+    pub(super) fn in_words(&self) -> String {
+        let mut lines = Lines::default();
+        lines.add("scene", format!("{} polygons", self.polygons));
+        let on = self.on.iter().flatten().count();
+        lines.add(
+            "views",
+            format!("{}, {on} of them on a polygon; the shortest of {} times counts", self.views, self.rounds),
+        );
+        lines.add("time", format!("load {:.3} s, BSP {:.3} s", self.timing.load_s, self.timing.bsp_s));
+        lines.add("errors", "relative, of form factors above 1e-3 and, with 99% and median, above 1e-4");
+        lines.add("counts", "lost of the polygons seen, and evaluations of form factors, for a view");
+        let mut text = lines.0;
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "\n{:<15} {:>9} {:>9} {:>10} {:>10} {:>9} {:>9} {:>9} {:>9} {:>11}",
+            "method", "ms mean", "median", "worst>1e-3", "worst>1e-4", "99%", "median", "lost", "seen", "evaluations"
+        );
+        let each = |count: usize| count as f64 / self.views.max(1) as f64;
+        for row in &self.methods {
+            let name = row.resolution.map_or_else(|| row.method.to_owned(), |n| format!("{} {n}", row.method));
+            let _ = writeln!(
+                text,
+                "{name:<15} {:>9.3} {:>9.3} {:>10.2e} {:>10.2e} {:>9.2e} {:>9.2e} {:>9.1} {:>9.1} {:>11.0}",
+                row.timing.view_ms_mean,
+                row.view_ms_median,
+                row.errors[0].max_error,
+                row.max_error,
+                row.p99_error,
+                row.median_error,
+                each(row.lost),
+                each(row.visible),
+                each(row.evaluations)
+            );
+        }
+        text
+    }
+}

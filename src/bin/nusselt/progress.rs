@@ -1,0 +1,61 @@
+//! A line on stderr that tells how far the work is.
+
+use std::io::{IsTerminal, Write, stderr};
+use std::time::{Duration, Instant};
+
+/// Shown if stderr is a terminal; gone when it is dropped.
+pub(crate) struct Progress {
+    what: &'static str,
+    total: usize,
+    done: usize,
+    start: Instant,
+    shown: Option<Instant>,
+    is_on: bool,
+}
+
+impl Progress {
+    /// Of `total` things, called `what`.
+    pub(crate) fn new(what: &'static str, total: usize, quiet: bool) -> Self {
+        let is_on = !quiet && stderr().is_terminal();
+        Self { what, total, done: 0, start: Instant::now(), shown: None, is_on }
+    }
+
+    /// So many more are done.
+    pub(crate) fn add(&mut self, count: usize) {
+        self.done += count;
+        let is_due = self.shown.is_none_or(|last| last.elapsed() > Duration::from_millis(100));
+        if self.is_on && is_due {
+            self.shown = Some(Instant::now());
+            // If stderr is closed there is no one left to tell.
+            let _ = write!(stderr(), "\r\x1b[K{}", self.line(self.start.elapsed().as_secs_f64()));
+        }
+    }
+
+    fn line(&self, seconds: f64) -> String {
+        let rate = self.done as f64 / seconds.max(1e-9);
+        let left = self.total.saturating_sub(self.done) as f64 / rate.max(1e-9);
+        format!("{} of {} {}, {rate:.1}/s, {left:.0} s left", self.done, self.total, self.what)
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if self.shown.is_some() {
+            let _ = write!(stderr(), "\r\x1b[K");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_tells_rate_and_time_left() {
+        let mut progress = Progress::new("views", 100, true);
+        progress.add(20);
+        progress.add(5);
+        assert_eq!(progress.line(10.0), "25 of 100 views, 2.5/s, 30 s left");
+        assert!(progress.shown.is_none(), "quiet");
+    }
+}
