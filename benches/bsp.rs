@@ -38,7 +38,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let more = ["Cray_left.obj", "Generic_Twin_7863.1.t0_left.obj", "Offset1.obj", "self_intersectA.obj"];
         files.extend(known.iter().map(|name| scenes.join(name)));
         files.extend(more.iter().map(|name| scenes.join("degenerate/manifold").join(name)));
-        files.retain(|path| path.exists());
+        files.retain(|path| {
+            let is_there = path.exists();
+            if !is_there {
+                eprintln!("SKIPPED: {} is not there", path.display());
+            }
+            is_there
+        });
     }
     for path in files {
         let scene = read_scene(&path, &ReadOptions::default())?.scene;

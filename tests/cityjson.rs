@@ -305,3 +305,38 @@ fn coordinates_of_equal_integers_are_equal() {
     assert_eq!(scene.vertices().len(), 6);
     assert!(scene.vertices().iter().all(|v| v.cmpge(DVec3::new(100.0, 200.0, 0.0)).all()));
 }
+
+#[test]
+fn optional_members_that_are_null_are_absent() {
+    let semantics = json!({ "surfaces": [{ "type": "RoofSurface" }], "values": [0, 0, 0, 0, 0, 0] });
+    let mut geometry = surfaces("MultiSurface", shell());
+    geometry["semantics"] = semantics;
+    let mut whole = file(json!({ "a": { "type": "Building", "geometry": [geometry] } }));
+    whole["geometry-templates"] = json!({ "templates": [], "vertices-templates": [] });
+    for (pointer, key, material, polygons) in [
+        ("", "geometry-templates", "RoofSurface", 6),
+        ("/geometry-templates", "templates", "RoofSurface", 6),
+        ("/geometry-templates", "vertices-templates", "RoofSurface", 6),
+        ("/CityObjects/a/geometry/0/semantics", "values", "Building", 6),
+        ("/CityObjects/a/geometry/0/semantics", "surfaces", "Building", 6),
+        ("/CityObjects/a/geometry/0", "semantics", "Building", 6),
+        ("/CityObjects/a/geometry/0", "template", "RoofSurface", 6),
+        ("/CityObjects/a/geometry/0", "transformationMatrix", "RoofSurface", 6),
+        ("/CityObjects/a/geometry/0", "lod", "RoofSurface", 6),
+        ("/CityObjects/a", "geometry", "", 0),
+        ("", "CityObjects", "", 0),
+    ] {
+        let mut file = whole.clone();
+        file.pointer_mut(pointer).unwrap()[key] = Value::Null;
+        if key == "surfaces" {
+            // There is nothing for values to name.
+            file["CityObjects"]["a"]["geometry"][0]["semantics"]["values"] = Value::Null;
+        }
+        let scene = read(&file).unwrap_or_else(|error| panic!("{pointer}/{key}: {error}")).scene;
+        assert_eq!(scene.polygon_count(), polygons, "{pointer}/{key}");
+        assert_eq!(scene.materials().first().map_or("", |known| &known.name), material, "{pointer}/{key}");
+    }
+    let mut none = file(json!({}));
+    none["vertices"] = Value::Null;
+    assert_eq!(read(&none).unwrap().scene.polygon_count(), 0);
+}

@@ -287,6 +287,35 @@ fn touching_in_a_point_does_not_connect_and_does_not_divide() {
     assert!(of(&shape, Some(0)).is_valid());
 }
 
+/// Squares on their corners before a wall, each with a corner all but at the wall's edge, and so small or so near that the
+/// straight pieces of that edge would pass through them, or on their other side.
+#[test]
+fn regions_are_valid_where_corners_are_nearer_to_a_curve_than_the_tolerance() {
+    let mut vertices = vec![[-9.0, -9.0, 2.0], [1.0, -9.0, 2.0], [1.0, 9.0, 2.0], [-9.0, 9.0, 2.0]];
+    let mut faces = vec![vec![0, 1, 2, 3]];
+    for k in 0..24 {
+        let (gap, size) = (10f64.powi(-4 - k % 8), if k % 3 == 0 { 1e-7 } else { 0.05 });
+        let (x, y) = (0.5 - gap, -2.0 + 0.17 * f64::from(k));
+        faces.push((0..4).map(|j| vertices.len() + j).collect());
+        vertices.extend([[x, y, 1.0], [x - size, y + size, 1.0], [x - 2.0 * size, y, 1.0], [x - size, y - size, 1.0]]);
+    }
+    let scene = Scene::builder().mesh(&vertices, &faces, Material::new("grey")).build().expect("a wall and squares");
+    for normal in [DVec3::Z, DVec3::new(0.3, -0.2, 1.0), DVec3::new(1.0, 0.1, 0.1)] {
+        let image = view(&scene, DVec3::ZERO, &Domain::Hemisphere(normal));
+        for projection in Projection::ALL {
+            let regions = regions(&image, projection);
+            for region in &regions {
+                assert!(!region.is_tangled, "{projection:?} {:?}", region.polygon);
+                let faults = region.shape.validation_errors();
+                assert!(faults.is_empty(), "{projection:?} {:?}: {faults:?}", region.polygon);
+            }
+            if projection == Projection::Nusselt && normal == DVec3::Z {
+                assert_eq!(holes(of(&regions, Some(0))), [24]);
+            }
+        }
+    }
+}
+
 #[test]
 fn an_empty_view_is_one_region_of_background() {
     let empty = Scene::builder().build().expect("no faces");

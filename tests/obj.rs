@@ -111,7 +111,17 @@ fn bad_materials_are_named_where_they_are_defined() {
             .unwrap_err()
             .to_string()
     };
-    assert!(read("newmtl b\nnewmtl a\nKd 0 -1 0").starts_with("m.mtl:2: material 0 (a)"));
+    for (line, what) in [
+        ("Kd 0 -1 0", "diffuse reflectance"),
+        ("Ks -1", "specular reflectance"),
+        ("Ke 0 0 -1", "emission"),
+        ("Ns -1", "exponent"),
+    ] {
+        assert_eq!(
+            read(&format!("newmtl b\nnewmtl a\n{line}")),
+            format!("m.mtl:2: the {what} of material \"a\" is -1; it takes a finite number of at least 0")
+        );
+    }
     assert_eq!(
         read("newmtl a\nKe 0 1e999 0"),
         "m.mtl:2: Ke: the number `1e999` is too large; the largest is about 1.8e308"

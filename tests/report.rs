@@ -116,47 +116,75 @@ fn twice(ring: &[[BigRational; 2]]) -> BigRational {
     ring.iter().zip(ring.iter().cycle().skip(1)).map(|(p, q)| &p[0] * &q[1] - &p[1] * &q[0]).sum()
 }
 
+/// The corners of a triangle in one of three planes: z = 0, a slanted one, and one across x.
+fn lifted(triangle: &[[i64; 2]; 3], plane: usize) -> [[f64; 3]; 3] {
+    triangle.map(|[x, y]| {
+        let lifted = [[x, y, 0], [x, y, 2 * x - 3 * y + 1], [3, x, y]][plane];
+        lifted.map(|x| x as f64)
+    })
+}
+
+/// Compares the overlaps of triangles in planes with those by rational arithmetic, pair by pair.
+fn check_overlaps(triangles: &[([[i64; 2]; 3], usize)]) -> Result<usize, TestCaseError> {
+    let exact = |t: &[[i64; 2]; 3]| t.map(|p| p.map(|x| BigRational::from_integer(x.into())));
+    let mut vertices = Vec::new();
+    let mut faces = Vec::new();
+    for (triangle, plane) in triangles {
+        faces.push((vertices.len()..vertices.len() + 3).collect::<Vec<_>>());
+        vertices.extend(lifted(triangle, *plane));
+    }
+    let found = report(&vertices, &faces);
+    prop_assert!(found.all_overlaps);
+    let mut expected = Vec::new();
+    for (b, (second, plane)) in triangles.iter().enumerate() {
+        for (a, (first, _)) in triangles[..b].iter().enumerate().filter(|(_, (_, other))| other == plane) {
+            let both = [first, second].map(|t| twice(&exact(t)));
+            let area = shared(first, second);
+            if area.is_positive() && both.iter().all(|twice| !twice.is_zero()) {
+                let opposed = both[0].is_negative() != both[1].is_negative();
+                let stretch = if *plane == 1 { 14f64.sqrt() } else { 1.0 };
+                let area = area.to_f64().expect("small") * 0.5 * stretch;
+                expected.push(([a, b].map(|k| PolygonId(k as u32)), opposed, area));
+            }
+        }
+    }
+    expected.sort_by_key(|overlap| overlap.0);
+    prop_assert_eq!(found.overlaps.len(), expected.len());
+    for (overlap, (polygons, opposed, area)) in found.overlaps.iter().zip(&expected) {
+        prop_assert_eq!((&overlap.polygons, &overlap.opposed), (polygons, opposed));
+        prop_assert!((overlap.area - area).abs() <= 1e-12 * (1.0 + area), "{} {area}", overlap.area);
+    }
+    Ok(expected.len())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(32))]
+
+    #[test]
+    fn overlaps_of_many_are_those_of_rational_arithmetic(seed: u64, count in 20usize..120, planes in 1usize..4) {
+        let mut random = Random(seed);
+        let mut triangles = Vec::new();
+        let mut next = |low: i64, high: i64| low + random.below((high - low + 1) as usize) as i64;
+        while triangles.len() < count {
+            // Scattered; or long around a hub; or a square of two, beside others.
+            let (x, y, plane) = (next(-12, 12), next(-12, 12), next(0, planes as i64 - 1) as usize);
+            match next(0, 2) {
+                0 => triangles.push(([0; 3].map(|_| [x + next(-2, 2), y + next(-2, 2)]), plane)),
+                1 => triangles.push(([[0, 0], [x, y], [x + next(-1, 1), y + next(-1, 1)]], plane)),
+                _ => triangles.extend([[[x, y], [x + 1, y], [x + 1, y + 1]], [[x, y], [x + 1, y + 1], [x, y + 1]]].map(|t| (t, plane))),
+            }
+        }
+        check_overlaps(&triangles)?;
+    }
+}
+
 proptest! {
     #[test]
     fn overlaps_are_those_of_rational_arithmetic(
         triangles in prop::collection::vec([[-4i64..5, -4i64..5], [-4..5, -4..5], [-4..5, -4..5]], 2..8),
         plane in 0usize..3,
     ) {
-        let exact = |t: &[[i64; 2]; 3]| t.map(|p| p.map(|x| BigRational::from_integer(x.into())));
-        // Into the plane z = 0, a slanted one, and one across x.
-        let lift = |[x, y]: [i64; 2]| match plane {
-            0 => [x, y, 0],
-            1 => [x, y, 2 * x - 3 * y + 1],
-            _ => [3, x, y],
-        }
-        .map(|x| x as f64);
-        let stretch = if plane == 1 { 14f64.sqrt() } else { 1.0 };
-        let mut vertices = Vec::new();
-        let mut faces = Vec::new();
-        for triangle in &triangles {
-            faces.push((vertices.len()..vertices.len() + 3).collect::<Vec<_>>());
-            vertices.extend(triangle.map(lift));
-        }
-        let found = report(&vertices, &faces);
-        prop_assert!(found.all_overlaps);
-        let mut expected = Vec::new();
-        for (b, second) in triangles.iter().enumerate() {
-            for (a, first) in triangles[..b].iter().enumerate() {
-                let both = [first, second].map(|t| twice(&exact(t)));
-                let area = shared(first, second);
-                if area.is_positive() && both.iter().all(|twice| !twice.is_zero()) {
-                    let opposed = both[0].is_negative() != both[1].is_negative();
-                    let area = area.to_f64().expect("small") * 0.5 * stretch;
-                    expected.push(([a, b].map(|k| PolygonId(k as u32)), opposed, area));
-                }
-            }
-        }
-        expected.sort_by_key(|overlap| overlap.0);
-        prop_assert_eq!(found.overlaps.len(), expected.len());
-        for (overlap, (polygons, opposed, area)) in found.overlaps.iter().zip(expected) {
-            prop_assert_eq!((overlap.polygons, overlap.opposed), (polygons, opposed));
-            prop_assert!((overlap.area - area).abs() <= 1e-12 * (1.0 + area), "{} {area}", overlap.area);
-        }
+        check_overlaps(&triangles.into_iter().map(|triangle| (triangle, plane)).collect::<Vec<_>>())?;
     }
 
     #[test]
@@ -392,16 +420,73 @@ fn large_scenes_are_looked_over_in_a_few_seconds() {
 
 #[test]
 fn heaps_on_one_spot_are_given_up_and_said_to_be() {
-    // Slanted triangles all through each other: nearly every box meets every other one.
-    let mut random = Random(8);
-    let n = 15_000;
-    let vertices: Vec<_> = (0..3 * n).map(|_| random.in_cube(1.0).to_array()).collect();
-    let faces: Vec<_> = (0..n).map(|k| vec![3 * k, 3 * k + 1, 3 * k + 2]).collect();
-    assert!(!report(&vertices, &faces).all_overlaps);
     // Squares all on each other.
     let square = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.], [0., 1., 0.]];
     let found = report(&square, &vec![vec![0, 1, 2, 3]; 1000]);
     assert!(!found.all_overlaps);
     assert_eq!(found.overlaps.len(), 100_000);
     assert_eq!(found.duplicates.len(), 999);
+}
+
+/// Triangles from a hub to neighbouring points of a circle, whose coordinates are multiples of 2^-20.
+fn fan(count: usize, lift: impl Fn(f64, f64) -> f64, hub: f64) -> (Vec<[f64; 3]>, Vec<Vec<usize>>) {
+    let round = |x: f64| (x * f64::from(1 << 20)).round() / f64::from(1 << 20);
+    let mut vertices = vec![[0.0, 0.0, hub]];
+    vertices.extend((0..count).map(|k| {
+        let (y, x) = (std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
+        [round(x), round(y), lift(round(x), round(y))]
+    }));
+    (vertices, (0..count).map(|k| vec![0, k + 1, (k + 1) % count + 1]).collect())
+}
+
+#[test]
+fn fans_and_cones_of_very_many_are_searched_to_the_end() {
+    let slanted = |x: f64, y: f64| 0.5 * x + 0.25 * y;
+    for (lift, hub, count) in
+        [(&(|_, _| 0.0) as &dyn Fn(f64, f64) -> f64, 0.0, 12_000), (&slanted, 0.0, 12_000), (&|_, _| 0.0, 1.0, 20_000)]
+    {
+        let (mut vertices, mut faces) = fan(count, lift, hub);
+        let found = report(&vertices, &faces);
+        assert!(found.all_overlaps);
+        assert_eq!(found.overlaps, []);
+        // One more, over the first two and no other.
+        if hub == 0.0 {
+            let third = vertices[3];
+            vertices.push(third.map(|x| 0.5 * x));
+            faces.push(vec![0, 1, vertices.len() - 1]);
+            let found = report(&vertices, &faces);
+            assert!(found.all_overlaps);
+            let on: Vec<_> = found.overlaps.iter().map(|overlap| overlap.polygons).collect();
+            assert_eq!(on, [[0, count], [1, count]].map(|pair| pair.map(|k| PolygonId(k as u32))));
+        }
+    }
+}
+
+#[test]
+fn rings_and_floors_of_very_many_are_searched_to_the_end() {
+    // Quads around a small hole: they share no vertex with most others, but their boxes meet.
+    let n = 5_000_usize;
+    let (inner, _) = fan(n, |x, y| x + y, 0.0);
+    let vertices: Vec<_> = inner[1..]
+        .iter()
+        .chain(&inner[1..])
+        .enumerate()
+        .map(|(k, p)| p.map(|x| if k < n { x / 1024.0 } else { x }))
+        .collect();
+    let faces: Vec<_> = (0..n).map(|k| vec![k, n + k, n + (k + 1) % n, (k + 1) % n]).collect();
+    let found = report(&vertices, &faces);
+    assert!(found.all_overlaps && found.overlaps.is_empty());
+    // A floor of tiles, turned, and one sheet over all of them.
+    let n = 100_usize;
+    let corner = |i: usize, j: usize| [3.0 * i as f64 - 4.0 * j as f64, 4.0 * i as f64 + 3.0 * j as f64, i as f64];
+    let vertices: Vec<_> = (0..=n).flat_map(|i| (0..=n).map(move |j| corner(i, j))).collect();
+    let at = |i: usize, j: usize| i * (n + 1) + j;
+    let mut faces: Vec<_> = (0..n)
+        .flat_map(|i| (0..n).map(move |j| vec![at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)]))
+        .collect();
+    faces.push(vec![at(0, 0), at(n, 0), at(n, n), at(0, n)]);
+    let found = report(&vertices, &faces);
+    assert!(found.all_overlaps);
+    assert_eq!(found.overlaps.len(), n * n);
+    assert!(found.overlaps.iter().all(|overlap| overlap.polygons[1] == PolygonId((n * n) as u32)));
 }

@@ -182,7 +182,7 @@ fn every_problem_is_reported_in_order() {
                 SceneProblem::UnknownVertex { polygon: PolygonId(1), vertex: 9, count: 5 },
                 SceneProblem::TooFewVertices { polygon: PolygonId(2), count: 2 },
                 SceneProblem::UnknownObject { polygon: PolygonId(2), object: 1, count: 1 },
-                SceneProblem::BadMaterial { material: 0, .. },
+                SceneProblem::BadMaterial { material: 0, what: "emission", .. },
             ]
         ),
         "{problems:?}"

@@ -73,10 +73,11 @@ fn every_truncation_is_refused() {
 }
 
 #[test]
-fn numbers_that_are_not_finite_are_told_with_their_triangle() {
+fn numbers_that_are_not_finite_are_told_once_with_their_triangle() {
     let mut triangles = TRIANGLES;
     triangles[1][2][1] = f32::NAN;
-    triangles[0][0][0] = f32::INFINITY;
+    triangles[0][0] = [f32::INFINITY; 3];
+    triangles[0][1][2] = f32::NAN;
     let what = "a coordinate is not finite; correct it";
     assert_eq!(
         faults(&binary(b"x", 2, &triangles)),

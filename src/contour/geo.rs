@@ -14,6 +14,8 @@ pub struct GeoRegion {
     pub side: Option<Side>,
     /// Its visible regions: `geo::MultiPolygon`, with exteriors counter-clockwise and interiors clockwise.
     pub shape: MultiPolygon<f64>,
+    /// True if its rings may touch or cross: see [`FlatRegion::is_tangled`].
+    pub is_tangled: bool,
 }
 
 impl ContourImage {
@@ -52,6 +54,7 @@ impl Projector {
             polygon: group[0].polygon,
             side: group[0].side,
             shape: MultiPolygon(group.iter().map(polygon).collect()),
+            is_tangled: group.iter().any(|region| region.is_tangled),
         });
         shapes.collect()
     }

@@ -89,10 +89,10 @@ impl<'a> Draft<'a> {
         self.refuse(place, what);
     }
 
-    /// Adds the next face, which cannot be used for what was noted: it keeps its number.
-    pub(super) fn add_broken_face(&mut self, object: ObjectId, material: MaterialId) {
+    /// Adds the next face, which cannot be used for what was noted, `why` at first: it keeps its number.
+    pub(super) fn add_broken_face(&mut self, why: String, object: ObjectId, material: MaterialId) {
         if self.drops {
-            return self.add_face(vec![Vec::new()], object, material);
+            return self.builder.add_unreadable_face(object, material, why);
         }
         // For the messages about the others.
         let stand_in = match self.stand_in {

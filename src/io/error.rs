@@ -8,7 +8,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum ReadError {
     /// The file could not be opened or read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}{}", path.display(), advice(source))]
     Io {
         /// The file.
         path: PathBuf,
@@ -36,6 +36,15 @@ pub enum ReadError {
     /// What the file contains cannot be used.
     #[error("{0}")]
     Invalid(Faults),
+}
+
+/// What to do about what the system says, to be written after it.
+pub(super) fn advice(error: &std::io::Error) -> &'static str {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "; check the name and the folder",
+        std::io::ErrorKind::PermissionDenied => "; allow reading it, or copy it",
+        _ => "",
+    }
 }
 
 /// A place in a file.

@@ -27,6 +27,9 @@ struct Properties<'a> {
     material: Option<&'a str>,
     #[serde(flatten)]
     share: Share,
+    /// Only if so.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    tangled: bool,
 }
 
 /// Polygons of rings of positions.
@@ -56,9 +59,16 @@ type Seen = (bool, Option<PolygonId>, Option<Side>);
 /// the image plane is 1. `tolerance` is that of [`Projector::regions`]. Numbers are the shortest decimals that read back as
 /// the same f64.
 ///
+/// A feature whose rings may touch or cross ([`FlatRegion::is_tangled`]) has the property `tangled`; gives the number of those.
+///
 /// # Errors
 /// Those of `out`.
-pub fn write_geojson(image: &ContourImage, projector: &Projector, tolerance: f64, out: impl Write) -> io::Result<()> {
+pub fn write_geojson(
+    image: &ContourImage,
+    projector: &Projector,
+    tolerance: f64,
+    out: impl Write,
+) -> io::Result<usize> {
     let in_degrees = projector.projection() == Projection::Equirectangular;
     let mut shapes: BTreeMap<Seen, Vec<FlatRegion>> = BTreeMap::new();
     for region in projector.regions(image, tolerance) {
@@ -76,15 +86,19 @@ pub fn write_geojson(image: &ContourImage, projector: &Projector, tolerance: f64
     let frame = FrameRow { right: plain(frame.right()), up: plain(frame.up()), towards: plain(frame.towards()) };
     field(&mut out, "frame", &frame)?;
     let scene = image.scene();
+    let mut tangled_count = 0;
     rows(&mut out, "features", shares(image), |out, (seen, share)| {
         let (_, polygon, side) = seen;
         let named = polygon.map(|id| scene.polygon(id));
+        let tangled = shapes.get(&seen).is_some_and(|regions| regions.iter().any(|region| region.is_tangled));
+        tangled_count += usize::from(tangled);
         let properties = Properties {
             polygon: polygon.map(|id| id.0),
             side: side.map(side_name),
             object: named.map(PolygonRef::object_name),
             material: named.map(|polygon| polygon.material().name.as_str()),
             share,
+            tangled,
         };
         let geometry = shapes.get(&seen).map(|regions| Geometry {
             r#type: "MultiPolygon",
@@ -93,7 +107,8 @@ pub fn write_geojson(image: &ContourImage, projector: &Projector, tolerance: f64
         Ok(serde_json::to_writer(out, &Feature { r#type: "Feature", properties, geometry })?)
     })?;
     writeln!(out, "}}")?;
-    out.flush()
+    out.flush()?;
+    Ok(tangled_count)
 }
 
 /// How much is seen of everything.

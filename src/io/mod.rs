@@ -3,6 +3,8 @@
 //! Readers take any bytes: what they cannot use they refuse with the file, the line and what to do
 //! about it, all faults at once. They keep to memory in proportion to the size of the files.
 
+#[cfg(any(feature = "cityjson", feature = "gltf"))]
+mod absent;
 mod atomic;
 #[cfg(feature = "json")]
 pub mod certificate;

@@ -5,7 +5,9 @@ const SHOWN: usize = 240;
 
 /// What is wrong, on one line.
 pub(super) fn told(error: &serde_json::Error) -> String {
-    shortened(&error.to_string().replacen("EOF while parsing", "the file ends in the midst of", 1))
+    let message = error.to_string().replacen("EOF while parsing", "the file ends in the midst of", 1);
+    let nested = "lists and objects are nested too deep, more than 127 levels; flatten them";
+    shortened(&message.replacen("recursion limit exceeded", nested, 1))
 }
 
 /// A message on one line, without what could control a terminal.

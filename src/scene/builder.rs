@@ -56,6 +56,8 @@ pub struct SceneBuilder {
     object_ids: HashMap<String, ObjectId>,
     materials: Vec<Material>,
     repair: Repair,
+    /// What is wrong with faces that could not be read, by their numbers.
+    unreadable: HashMap<usize, String>,
 }
 
 impl SceneBuilder {
@@ -85,6 +87,12 @@ impl SceneBuilder {
     /// Adds a face; the k-th face added is polygon k.
     pub fn add_face(&mut self, face: FaceSpec) {
         self.faces.push(face);
+    }
+
+    /// Adds a face that cannot be read, for that reason: it keeps its number, and is a problem unless malformed faces are dropped.
+    pub fn add_unreadable_face(&mut self, object: ObjectId, material: MaterialId, why: String) {
+        self.unreadable.insert(self.faces.len(), why);
+        self.add_face(FaceSpec { rings: Vec::new(), object, material });
     }
 
     /// Adds a mesh of simple faces in one go: object `default`, one material.
@@ -224,6 +232,11 @@ impl SceneBuilder {
             Counts { vertices: self.vertices.len(), objects: self.objects.len(), materials: self.materials.len() };
         let mut found = Vec::new();
         let is_sound = check_face(polygon, face, counts, &mut found);
+        if let Some(why) = self.unreadable.get(&polygon.index()) {
+            let unreadable = SceneProblem::Unreadable { polygon, what: why.clone() };
+            found.retain(|problem| !matches!(problem, SceneProblem::TooFewVertices { .. }));
+            found.insert(0, unreadable);
+        }
         let infinite = face.rings.iter().flatten().find(|&&v| self.vertices.get(v).is_some_and(|p| !p.is_finite()));
         if self.repair.malformed == OrDrop::Reject || (is_sound && infinite.is_none()) {
             problems.extend(found);
@@ -231,7 +244,8 @@ impl SceneBuilder {
         }
         // Names of objects and materials are no matter of the face's shape: they are problems all the same.
         let is_shape = |problem: &SceneProblem| {
-            matches!(problem, SceneProblem::TooFewVertices { .. } | SceneProblem::UnknownVertex { .. })
+            use SceneProblem::{TooFewVertices, UnknownVertex, Unreadable};
+            matches!(problem, TooFewVertices { .. } | UnknownVertex { .. } | Unreadable { .. })
         };
         let (shape, names): (Vec<_>, Vec<_>) = found.into_iter().partition(is_shape);
         problems.extend(names);

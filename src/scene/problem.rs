@@ -105,12 +105,24 @@ pub enum SceneProblem {
         tolerance: f64,
     },
     /// A number of a material is infinite, not a number, or negative.
-    #[error("material {material} ({name}) has a reflectance, exponent or emission that is negative or not finite")]
+    #[error("the {what} of material {name:?} is {value}; it takes a finite number of at least 0")]
     BadMaterial {
-        /// The material.
+        /// The material, in the order in which they were added.
         material: u32,
         /// Its name.
         name: String,
+        /// What the number is: its diffuse or specular reflectance, its exponent or its emission.
+        what: &'static str,
+        /// The number: the first one, if there are several.
+        value: f64,
+    },
+    /// A face that was given up before it had vertices: see [`SceneBuilder::add_unreadable_face`](super::SceneBuilder::add_unreadable_face).
+    #[error("polygon {polygon} cannot be read: {what}")]
+    Unreadable {
+        /// The polygon.
+        polygon: PolygonId,
+        /// Why.
+        what: String,
     },
     /// More vertices, edges or polygons than a 32-bit id can name.
     #[error("the scene has more than {limit} {what}")]
@@ -128,6 +140,7 @@ impl SceneProblem {
         match *self {
             Self::TooFewVertices { polygon, .. }
             | Self::UnknownVertex { polygon, .. }
+            | Self::Unreadable { polygon, .. }
             | Self::UnknownMaterial { polygon, .. }
             | Self::UnknownObject { polygon, .. }
             | Self::SelfCrossing { polygon }

@@ -50,10 +50,17 @@ pub(super) fn check_face(
 /// The materials with numbers that are negative or not finite.
 pub(super) fn check_materials(materials: &[Material], problems: &mut Vec<SceneProblem>) {
     for (index, material) in materials.iter().enumerate() {
-        let colours = [material.diffuse, material.specular, material.emission];
-        let is_sound = |x: &f64| x.is_finite() && *x >= 0.0;
-        if !colours.iter().flatten().chain([&material.exponent]).all(is_sound) {
-            problems.push(SceneProblem::BadMaterial { material: index as u32, name: material.name.clone() });
+        let numbers: [(&'static str, &[f64]); 4] = [
+            ("diffuse reflectance", &material.diffuse),
+            ("specular reflectance", &material.specular),
+            ("exponent", &[material.exponent]),
+            ("emission", &material.emission),
+        ];
+        let all = numbers.into_iter().flat_map(|(what, values)| values.iter().map(move |&value| (what, value)));
+        let is_sound = |x: f64| x.is_finite() && x >= 0.0;
+        if let Some((what, value)) = all.into_iter().find(|&(_, value)| !is_sound(value)) {
+            let (material, name) = (index as u32, material.name.clone());
+            problems.push(SceneProblem::BadMaterial { material, name, what, value });
         }
     }
 }

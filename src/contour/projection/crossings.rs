@@ -53,11 +53,8 @@ pub(super) fn crossing(lines: &[Vec<DVec2>], square: f64) -> Vec<[u32; 2]> {
     found
 }
 
-/// True if two segments that have no end in common meet.
+/// True if two segments meet, but at an end that they have in common.
 fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
-    if [c, d].contains(&a) || [c, d].contains(&b) {
-        return false;
-    }
     let apart = a.max(b).cmplt(c.min(d)) | c.max(d).cmplt(a.min(b));
     if apart.any() {
         return false;
@@ -66,6 +63,12 @@ fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
         let [p, q, r] = [p, q, r].map(|p| Coord { x: p.x, y: p.y });
         orient2d(p, q, r)
     };
+    if [c, d].contains(&a) || [c, d].contains(&b) {
+        // From the common end: along each other, or apart.
+        let [common, far] = if [c, d].contains(&a) { [a, b] } else { [b, a] };
+        let other = if c == common { d } else { c };
+        return turn(common, far, other) == 0.0 && (far - common).dot(other - common) > 0.0;
+    }
     // On one side of the other's line, both, and not on it.
     let beside = |x: f64, y: f64| (x > 0.0 && y > 0.0) || (x < 0.0 && y < 0.0);
     !beside(turn(a, b, c), turn(a, b, d)) && !beside(turn(c, d, a), turn(c, d, b))
@@ -93,6 +96,11 @@ mod tests {
         for square in [0.1, 1.0, 100.0] {
             assert_eq!(crossing(&lines, square), [[0, 0], [0, 1], [2, 0], [3, 0]], "{square}");
         }
+        let spike = [[0.0, 0.0], [1.0, 2.0], [0.5, 1.0], [0.0, 3.0]].map(DVec2::from).to_vec();
+        let beside = [[0.0, 0.0], [2.0, 4.0]].map(DVec2::from).to_vec();
+        let on = [[0.0, 0.0], [-1.0, -2.0]].map(DVec2::from).to_vec();
+        let found = crossing(&[spike, beside, on], 0.7);
+        assert_eq!(found, [[0, 0], [0, 1], [1, 0]], "along each other from a common point");
         let eight = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]].map(DVec2::from).to_vec();
         assert_eq!(crossing(&[eight], 0.3), [[0, 0], [0, 2]], "itself");
     }

@@ -5,6 +5,7 @@
 //! up, nothing is mirrored. Since a cell's boundary runs counter-clockwise seen from *outside* of the
 //! sphere, its picture runs clockwise (with y up).
 
+mod corners;
 mod crossings;
 mod flatten;
 mod frame;

@@ -5,6 +5,7 @@
 //! same points on it, bit by bit. Curves are broken where they cross the lines of a grid that all share: between the
 //! borders of a square, curves that do not cross have chords that do not cross.
 
+use super::corners::Corners;
 use super::crossings::crossing;
 use super::{Projection, Projector, STEREOGRAPHIC_REACH};
 use crate::contour::ContourImage;
@@ -44,6 +45,9 @@ pub struct FlatRegion {
     pub exterior: Vec<DVec2>,
     /// The rings of the holes, clockwise.
     pub holes: Vec<Vec<DVec2>>,
+    /// True if its rings may touch, cross or be on the wrong side of each other or of those of other regions: what is left
+    /// of that is as near as rounding, or was given up for its number.
+    pub is_tangled: bool,
 }
 
 /// Twice the area of a ring, positive if it is counter-clockwise.
@@ -61,10 +65,10 @@ impl Projector {
     /// is.
     ///
     /// Curves are flattened to within about `tolerance`, in the picture's units (less than 1e-9, or NaN, counts as 1e-9). Regions
-    /// that share a part of their boundary share its points exactly, and where straight pieces would cross, as a corner is nearer to a curve than
-    /// the tolerance, those pieces are halved until they do not, with at most nine times as many points. Two exceptions are left, and not
-    /// counted: what is nearer than the rounding of the points may cross still; and a whole boundary between a straight piece and its curve crosses nothing, so
-    /// that a hole may lie outside of its exterior.
+    /// that share a part of their boundary share its points exactly. Where straight pieces would cross, or a corner of a region lies between such a
+    /// piece and its curve, those pieces are halved until that is over, with at most nine times as many points. So regions are valid polygons, with
+    /// their holes inside. What is left, as it is nearer than the rounding of the points or as there are too many, is told
+    /// by [`FlatRegion::is_tangled`].
     ///
     /// Regions and holes that rounding leaves fewer than three different points are left out.
     ///
@@ -79,7 +83,7 @@ impl Projector {
         let flattener = Flattener { projector: self, outlines: &outlines };
         let inner = flattener.all_inner(tolerance.max(FINEST));
         let regions = components.iter().filter_map(|component| {
-            let rings = component.loops.iter().map(|runs| flattener.ring(runs, &inner));
+            let rings = component.loops.iter().map(|runs| flattener.ring(runs, &inner.points));
             let mut rings: Vec<_> =
                 rings.filter(|ring| ring.len() > 2).map(|ring| (double_area(&ring), ring)).collect();
             // The only ring that runs around its inside the other way.
@@ -95,7 +99,8 @@ impl Projector {
                 hole
             });
             let label = component.label;
-            Some(FlatRegion { polygon: label.polygon, side: label.side, exterior, holes: holes.collect() })
+            let is_tangled = component.loops.iter().flatten().any(|run| inner.is_tangled[run.chain as usize]);
+            Some(FlatRegion { polygon: label.polygon, side: label.side, exterior, holes: holes.collect(), is_tangled })
         });
         regions.collect()
     }
@@ -180,6 +185,13 @@ struct Path<'a> {
     /// `None` if it is straight.
     curve: Option<Curve<'a>>,
     points: Vec<(f64, DVec2)>,
+}
+
+/// The points of all chains without their ends, forward.
+struct Inner {
+    points: Vec<Vec<DVec2>>,
+    /// Whether pieces of a chain cross others still, or have a corner between them and the curve.
+    is_tangled: Vec<bool>,
 }
 
 impl Path<'_> {
@@ -268,6 +280,19 @@ impl Curve<'_> {
     }
 }
 
+/// The stretches of curves that have a corner between them and their chord, as numbers of path and stretch.
+fn between(paths: &[Path<'_>], lines: &[Vec<DVec2>], corners: &Corners) -> Vec<[u32; 2]> {
+    let mut found = Vec::new();
+    for (number, (path, line)) in (0..).zip(paths.iter().zip(lines)) {
+        let Some(curve) = &path.curve else { continue };
+        let normal = curve.axes[0].cross(curve.axes[1]);
+        let stretches = (0..).zip(line.windows(2));
+        let meets = stretches.filter(|(_, pair)| corners.are_between([pair[0], pair[1]], normal));
+        found.extend(meets.map(|(stretch, _)| [number, stretch]));
+    }
+    found
+}
+
 fn nearest_on_segment(p: DVec2, a: DVec2, b: DVec2) -> DVec2 {
     let ab = b - a;
     let along = (p - a).dot(ab) / ab.length_squared();
@@ -315,9 +340,9 @@ impl<'a> Flattener<'a> {
         }
     }
 
-    /// The points of all chains without their ends, forward. Where straight pieces of curves cross, they are halved until they do
-    /// not: curves that do not cross may be nearer to each other than the tolerance.
-    fn all_inner(&self, tolerance: f64) -> Vec<Vec<DVec2>> {
+    /// The points of all chains. Where straight pieces of curves cross, or have a corner between them and the curve, they are
+    /// halved until they do not: curves that do not cross may be nearer to each other than the tolerance.
+    fn all_inner(&self, tolerance: f64) -> Inner {
         let mut paths: Vec<Path<'_>> = Vec::new();
         let mut lines: Vec<Vec<DVec2>> = Vec::new();
         for chain in 0..self.outlines.chains.len() as u32 {
@@ -327,12 +352,19 @@ impl<'a> Flattener<'a> {
             lines.push(std::iter::once(self.start(run)).chain(points).chain([self.end(run)]).collect());
             paths.push(path);
         }
+        let square = 2.0 * tolerance.sqrt();
+        // Chords are bent by what their middles are off.
+        let corners = Corners::new(self.corners(), square, 2.0 * tolerance);
         // What stays nearer than rounding along all of its length would never end.
         let mut room = ADDED * lines.iter().map(Vec::len).sum::<usize>();
-        loop {
+        let left = loop {
+            let mut faults = crossing(&lines, square);
+            faults.extend(between(&paths, &lines, &corners));
+            faults.sort_unstable();
+            faults.dedup();
             let before = room;
             // Those of one chain from its end, so that the numbers before stay.
-            for [chain, stretch] in crossing(&lines, 2.0 * tolerance.sqrt()).into_iter().rev().take(room) {
+            for &[chain, stretch] in faults.iter().rev().take(room) {
                 let (path, line) = (&mut paths[chain as usize], &mut lines[chain as usize]);
                 if let Some(place) = path.halve(stretch as usize, [line[stretch as usize], line[stretch as usize + 1]])
                 {
@@ -341,10 +373,25 @@ impl<'a> Flattener<'a> {
                 }
             }
             if room == before {
-                break;
+                break faults;
             }
+        };
+        let mut is_tangled = vec![false; lines.len()];
+        for [chain, _] in left {
+            is_tangled[chain as usize] = true;
         }
-        paths.into_iter().map(|path| path.points.into_iter().map(|point| point.1).collect()).collect()
+        let points = paths.into_iter().map(|path| path.points.into_iter().map(|point| point.1).collect()).collect();
+        Inner { points, is_tangled }
+    }
+
+    /// The corners of all regions in the picture, with their directions; not poles, which have many places.
+    fn corners(&self) -> impl Iterator<Item = (DVec2, DVec3)> {
+        let chains = 0..self.outlines.chains.len() as u32;
+        let runs = chains.flat_map(|chain| [true, false].map(|forward| Run { chain, forward }));
+        runs.filter_map(|run| {
+            let vertex = self.outlines.start(run);
+            (self.outlines.spot(vertex) != Spot::Pole).then(|| (self.start(run), self.outlines.unit(vertex)))
+        })
     }
 
     /// A chain in the picture.

@@ -1,5 +1,6 @@
 //! What can go wrong when a kept certificate is read.
 
+use super::super::error::advice;
 use super::rows::SceneSize;
 use std::path::PathBuf;
 
@@ -8,7 +9,7 @@ use std::path::PathBuf;
 #[non_exhaustive]
 pub enum CertificateError {
     /// The file could not be opened or read.
-    #[error("cannot read {}: {source}", path.display())]
+    #[error("cannot read {}: {source}{}", path.display(), advice(source))]
     Io {
         /// The file.
         path: PathBuf,

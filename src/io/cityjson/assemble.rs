@@ -233,8 +233,8 @@ impl<'a> Assembly<'a, '_> {
             Ok(rings) => rings,
             Err(what) => {
                 let place = place(model, &self.runs, number);
-                self.draft.refuse_face(place, what);
-                self.draft.add_broken_face(object, material);
+                self.draft.refuse_face(place, &what);
+                self.draft.add_broken_face(what, object, material);
                 return;
             }
         };

@@ -1,5 +1,6 @@
 //! The JSON of CityJSON, as far as it says what a scene is made of.
 
+use super::super::absent::or_default;
 use super::super::number::shown;
 use super::super::told::told;
 use super::boundary::Nested;
@@ -14,9 +15,9 @@ pub(super) struct Model {
     r#type: Option<String>,
     version: Option<String>,
     pub(super) transform: Option<Transform>,
-    #[serde(rename = "CityObjects", default)]
+    #[serde(rename = "CityObjects", default, deserialize_with = "or_default")]
     pub(super) city_objects: CityObjects,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) vertices: Vec<[f64; 3]>,
     #[serde(rename = "geometry-templates")]
     pub(super) templates: Option<Templates>,
@@ -76,7 +77,7 @@ pub(super) struct Geometry {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Semantics {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) surfaces: Vec<SemanticSurface>,
     #[serde(default)]
     pub(super) values: Nested,
@@ -89,9 +90,9 @@ pub(super) struct SemanticSurface {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Templates {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) templates: Vec<Geometry>,
-    #[serde(rename = "vertices-templates", default)]
+    #[serde(rename = "vertices-templates", default, deserialize_with = "or_default")]
     pub(super) vertices: Vec<[f64; 3]>,
 }
 

@@ -75,7 +75,7 @@ fn accessors(root: &Root, meshes: &[usize], draft: &mut Draft<'_>) -> Vec<bool> 
     for &mesh in meshes {
         for (number, primitive) in root.meshes[mesh].primitives.iter().enumerate() {
             // Points and lines are passed over.
-            if primitive.mode < 4 {
+            if primitive.mode() < 4 {
                 continue;
             }
             for accessor in [primitive.attributes.position, primitive.indices].into_iter().flatten() {
@@ -250,11 +250,9 @@ impl Builder<'_, '_> {
                     }
                     Err(unknown) => {
                         let count = triangles.positions().count;
-                        self.draft.refuse_face(
-                            place(),
-                            format_args!("there is no vertex {unknown}; the primitive has {count}"),
-                        );
-                        self.draft.add_broken_face(object, material);
+                        let what = format!("there is no vertex {unknown}; the primitive has {count}");
+                        self.draft.refuse_face(place(), &what);
+                        self.draft.add_broken_face(what, object, material);
                     }
                 }
             }

@@ -1,5 +1,6 @@
 //! The bytes of buffers: in the file, or beside it.
 
+use super::super::error::advice;
 use super::super::number::shown;
 use super::json::{Buffer, Root};
 use base64::Engine;
@@ -77,7 +78,7 @@ impl<'a> Buffers<'a> {
         if let Some(&known) = self.by_name.get(&path) {
             return Ok(known);
         }
-        let bytes = load(&path).map_err(|error| format!("cannot read {}: {error}", shown(&path)))?;
+        let bytes = load(&path).map_err(|error| format!("cannot read {}: {error}{}", shown(&path), advice(&error)))?;
         self.loaded.push(bytes);
         self.by_name.insert(path, self.loaded.len() - 1);
         Ok(self.loaded.len() - 1)

@@ -1,5 +1,6 @@
 //! The JSON of glTF, as far as it says what a scene is made of.
 
+use super::super::absent::or_default;
 use super::super::number::shown;
 use super::super::told::told;
 use serde::de::{Error, SeqAccess, Visitor};
@@ -12,29 +13,29 @@ use std::marker::PhantomData;
 #[serde(rename_all = "camelCase")]
 pub(super) struct Root {
     asset: Asset,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) extensions_required: Vec<String>,
     pub(super) scene: Option<usize>,
     #[serde(default, deserialize_with = "bounded")]
     pub(super) scenes: Vec<Scene>,
     #[serde(default, deserialize_with = "bounded")]
     pub(super) nodes: Vec<Node>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) meshes: Vec<Mesh>,
     #[serde(default, deserialize_with = "bounded")]
     pub(super) materials: Vec<Material>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) accessors: Vec<Accessor>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) buffer_views: Vec<View>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) buffers: Vec<Buffer>,
 }
 
 /// Of what takes a few bytes in the file, but many in memory, a file may have so many.
 const MOST: usize = 1 << 20;
 
-/// A list of at most [`MOST`] items.
+/// A list of at most [`MOST`] items; none if it is `null`.
 fn bounded<'de, D: Deserializer<'de>, T: Deserialize<'de>>(list: D) -> Result<Vec<T>, D::Error> {
     struct Bounded<T>(PhantomData<T>);
 
@@ -43,6 +44,14 @@ fn bounded<'de, D: Deserializer<'de>, T: Deserialize<'de>>(list: D) -> Result<Ve
 
         fn expecting(&self, f: &mut Formatter<'_>) -> std::fmt::Result {
             f.write_str("a list")
+        }
+
+        fn visit_none<E: Error>(self) -> Result<Vec<T>, E> {
+            Ok(Vec::new())
+        }
+
+        fn visit_some<D: Deserializer<'de>>(self, list: D) -> Result<Vec<T>, D::Error> {
+            list.deserialize_seq(self)
         }
 
         fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Vec<T>, A::Error> {
@@ -57,7 +66,7 @@ fn bounded<'de, D: Deserializer<'de>, T: Deserialize<'de>>(list: D) -> Result<Ve
         }
     }
 
-    list.deserialize_seq(Bounded(PhantomData))
+    list.deserialize_option(Bounded(PhantomData))
 }
 
 #[derive(Debug, Deserialize)]
@@ -69,14 +78,14 @@ struct Asset {
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Scene {
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) nodes: Vec<usize>,
 }
 
 #[derive(Debug, Deserialize)]
 pub(super) struct Node {
     pub(super) name: Option<String>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) children: Vec<usize>,
     pub(super) mesh: Option<usize>,
     pub(super) skin: Option<usize>,
@@ -97,14 +106,16 @@ pub(super) struct Primitive {
     pub(super) attributes: Attributes,
     pub(super) indices: Option<usize>,
     pub(super) material: Option<usize>,
-    #[serde(default = "triangles")]
-    pub(super) mode: u32,
-    #[serde(default)]
+    mode: Option<u32>,
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) targets: Vec<serde::de::IgnoredAny>,
 }
 
-fn triangles() -> u32 {
-    4
+impl Primitive {
+    /// How the corners make triangles, strips, fans, points or lines: triangles (4) if it is not said.
+    pub(super) fn mode(&self) -> u32 {
+        self.mode.unwrap_or(4)
+    }
 }
 
 #[derive(Debug, Default, Deserialize)]
@@ -117,10 +128,10 @@ pub(super) struct Attributes {
 #[serde(rename_all = "camelCase")]
 pub(super) struct Accessor {
     pub(super) buffer_view: Option<usize>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) byte_offset: usize,
     pub(super) component_type: u32,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) normalized: bool,
     pub(super) count: usize,
     pub(super) r#type: String,
@@ -138,7 +149,7 @@ pub(super) struct Sparse {
 #[serde(rename_all = "camelCase")]
 pub(super) struct SparseIndices {
     pub(super) buffer_view: usize,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) byte_offset: usize,
     pub(super) component_type: u32,
 }
@@ -147,7 +158,7 @@ pub(super) struct SparseIndices {
 #[serde(rename_all = "camelCase")]
 pub(super) struct SparseValues {
     pub(super) buffer_view: usize,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) byte_offset: usize,
 }
 
@@ -155,7 +166,7 @@ pub(super) struct SparseValues {
 #[serde(rename_all = "camelCase")]
 pub(super) struct View {
     pub(super) buffer: usize,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) byte_offset: usize,
     pub(super) byte_length: usize,
     pub(super) byte_stride: Option<usize>,
@@ -175,7 +186,7 @@ pub(super) struct Material {
     pub(super) pbr_metallic_roughness: Option<Surface>,
     pub(super) emissive_factor: Option<[f64; 3]>,
     pub(super) emissive_texture: Option<serde::de::IgnoredAny>,
-    #[serde(default)]
+    #[serde(default, deserialize_with = "or_default")]
     pub(super) extensions: MaterialExtensions,
 }
 

@@ -24,7 +24,7 @@ pub(super) struct Triangles<'a> {
 impl<'a> Triangles<'a> {
     /// Checks a primitive; `None` if it has no triangles but points or lines, or no positions.
     pub(super) fn new(primitive: &Primitive, elements: &'a [Option<Elements<'a>>]) -> Result<Option<Self>, String> {
-        let mode = match primitive.mode {
+        let mode = match primitive.mode() {
             0..=3 => return Ok(None),
             4 => Mode::Triangles,
             5 => Mode::Strip,

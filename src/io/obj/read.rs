@@ -66,7 +66,8 @@ pub fn parse(
 /// A face with the vertices as the file numbers them, from 0.
 struct Face {
     line: usize,
-    ring: Vec<usize>,
+    /// Or what is wrong with it.
+    ring: Result<Vec<usize>, String>,
     object: ObjectId,
     material: usize,
 }
@@ -168,10 +169,7 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
     }
 
     fn read_face(&mut self, line: usize, rest: &str) {
-        let ring = self.ring(rest).unwrap_or_else(|what| {
-            self.draft.refuse_face(Place::Line(line), what);
-            Vec::new()
-        });
+        let ring = self.ring(rest).inspect_err(|what| self.draft.refuse_face(Place::Line(line), what));
         let object = self.current_object();
         let material = self.material.unwrap_or_else(|| self.use_material("default"));
         self.material = Some(material);
@@ -304,20 +302,20 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
     fn add_faces(&mut self) -> Vec<usize> {
         let count = self.vertex_count;
         let mut lines = Vec::with_capacity(self.faces.len());
-        for Face { line, mut ring, object, material } in self.faces.drain(..) {
-            if let Some(unknown) = ring.iter().find(|&&index| index >= count)
-                && !self.draft.drops
-            {
-                let what = format_args!("there is no vertex {}; the file has {count}", unknown + 1);
-                self.draft.refuse_face(Place::Line(line), what);
-                ring.clear();
-            }
+        for Face { line, ring, object, material } in self.faces.drain(..) {
+            let ring = ring.and_then(|ring| match ring.iter().find(|&&index| index >= count) {
+                Some(unknown) if !self.draft.drops => {
+                    let what = format!("there is no vertex {}; the file has {count}", unknown + 1);
+                    self.draft.refuse_face(Place::Line(line), &what);
+                    Err(what)
+                }
+                _ => Ok(ring),
+            });
             lines.push(line);
             let material = MaterialId(material as u32);
-            if ring.is_empty() {
-                self.draft.add_broken_face(object, material);
-            } else {
-                self.draft.add_face(vec![ring], object, material);
+            match ring {
+                Ok(ring) => self.draft.add_face(vec![ring], object, material),
+                Err(why) => self.draft.add_broken_face(why, object, material),
             }
         }
         lines

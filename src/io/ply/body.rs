@@ -18,9 +18,9 @@ enum Role {
     None,
 }
 
-/// A face as the file has it; an empty ring if it cannot be used.
+/// A face as the file has it, or what is wrong with it.
 struct Face {
-    ring: Vec<usize>,
+    ring: Result<Vec<usize>, String>,
     origin: Origin,
 }
 
@@ -137,10 +137,7 @@ impl Reader<'_> {
                 self.vertex_count += 1;
             }
             Role::Face(_) => {
-                let ring = indices(&self.numbers).unwrap_or_else(|what| {
-                    self.draft.refuse_face(place(), what);
-                    Vec::new()
-                });
+                let ring = indices(&self.numbers).inspect_err(|what| self.draft.refuse_face(place(), what));
                 let origin = self.origin(role, k);
                 self.faces.push(Face { ring, origin });
             }
@@ -156,11 +153,10 @@ impl Reader<'_> {
         let numbers = std::mem::take(&mut self.numbers);
         for strip in numbers.split(|&number| number == -1.0) {
             for (turn, corners) in strip.windows(3).enumerate() {
-                let mut ring = indices(corners).unwrap_or_else(|what| {
-                    self.draft.refuse_face(place(), what);
-                    Vec::new()
-                });
-                if turn % 2 == 1 && !ring.is_empty() {
+                let mut ring = indices(corners).inspect_err(|what| self.draft.refuse_face(place(), what));
+                if let Ok(ring) = &mut ring
+                    && turn % 2 == 1
+                {
                     ring.swap(0, 1);
                 }
                 self.faces.push(Face { ring, origin });
@@ -177,9 +173,9 @@ impl Reader<'_> {
             return;
         }
         if let Role::Face(_) = role {
-            self.draft.refuse_face(place, what);
+            self.draft.refuse_face(place, &what);
             let origin = self.origin(role, k);
-            self.faces.push(Face { ring: Vec::new(), origin });
+            self.faces.push(Face { ring: Err(what), origin });
         } else {
             self.draft.fault(place, what);
         }
@@ -200,17 +196,19 @@ impl Reader<'_> {
         let mut origins = Vec::with_capacity(self.faces.len());
         for Face { ring, origin } in self.faces {
             origins.push(origin);
-            if let Some(unknown) = ring.iter().find(|&&index| index >= count)
-                && !self.draft.drops
-            {
-                let known =
-                    if count == 0 { "there are none".to_owned() } else { format!("they are 0 to {}", count - 1) };
-                self.draft.refuse_face(origin.place(), format_args!("there is no vertex {unknown}; {known}"));
-                self.draft.add_broken_face(object, material);
-            } else if ring.is_empty() {
-                self.draft.add_broken_face(object, material);
-            } else {
-                self.draft.add_face(vec![ring], object, material);
+            let ring = ring.and_then(|ring| match ring.iter().find(|&&index| index >= count) {
+                Some(unknown) if !self.draft.drops => {
+                    let known =
+                        if count == 0 { "there are none".to_owned() } else { format!("they are 0 to {}", count - 1) };
+                    let what = format!("there is no vertex {unknown}; {known}");
+                    self.draft.refuse_face(origin.place(), &what);
+                    Err(what)
+                }
+                _ => Ok(ring),
+            });
+            match ring {
+                Ok(ring) => self.draft.add_face(vec![ring], object, material),
+                Err(why) => self.draft.add_broken_face(why, object, material),
             }
         }
         self.draft.finish(|k| origins.get(k).map_or(Place::File, |origin| origin.place()), |_| None)

@@ -17,10 +17,12 @@ pub(super) fn parse(bytes: &[u8], mut draft: Draft<'_>) -> Result<Loaded, ReadEr
         line += 1;
         let text = String::from_utf8_lossy(take_line(&mut rest));
         if let Err(what) = reader.read_line(line, text.trim_matches(is_blank)) {
-            if reader.facet.is_some() {
-                reader.draft.refuse_face(Place::Line(line), what);
-            } else {
-                reader.draft.fault(Place::Line(line), what);
+            match &mut reader.facet {
+                Some(facet) => {
+                    reader.draft.refuse_face(Place::Line(line), &what);
+                    facet.broken.get_or_insert(what);
+                }
+                None => reader.draft.fault(Place::Line(line), what),
             }
         }
     }
@@ -31,7 +33,8 @@ pub(super) fn parse(bytes: &[u8], mut draft: Draft<'_>) -> Result<Loaded, ReadEr
 struct Facet {
     line: usize,
     ring: Vec<usize>,
-    is_broken: bool,
+    /// What is wrong with it, at first.
+    broken: Option<String>,
 }
 
 struct Reader<'a> {
@@ -67,7 +70,7 @@ impl Reader<'_> {
                     if self.object.is_none() {
                         self.object = Some(self.draft.builder.add_object("default"));
                     }
-                    self.facet = Some(Facet { line, ring: Vec::new(), is_broken: false });
+                    self.facet = Some(Facet { line, ring: Vec::new(), broken: None });
                     // The normal is whatever follows: some programs write `nan` for it.
                     if rest.get(..6).is_some_and(|word| word.eq_ignore_ascii_case("normal")) {
                         for _ in 0..4 {
@@ -79,7 +82,6 @@ impl Reader<'_> {
                 "endfacet" => self.end_facet(None),
                 "outer" | "loop" | "endloop" => {}
                 _ => {
-                    self.break_facet();
                     return Err(format!(
                         "{} is no word of STL; it takes `solid`, `facet normal`, `outer loop`, `vertex` and their ends",
                         shown(word)
@@ -99,7 +101,7 @@ impl Reader<'_> {
             } else {
                 number::parse(word)
             };
-            *coordinate = number.inspect_err(|_| self.break_facet())?;
+            *coordinate = number?;
         }
         let Some(facet) = &mut self.facet else {
             return Err("a vertex outside of a facet; it takes `facet` and `endfacet` around it".to_owned());
@@ -109,26 +111,22 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn break_facet(&mut self) {
-        if let Some(facet) = &mut self.facet {
-            facet.is_broken = true;
-        }
-    }
-
     /// Ends the facet that was begun, if one was. If it is not its own end that ends it, it is at fault.
     fn end_facet(&mut self, before: Option<&str>) {
-        let (Some(Facet { line, ring, is_broken }), Some(object)) = (self.facet.take(), self.object) else { return };
-        let place = Place::Line(line);
+        let (Some(Facet { line, ring, broken }), Some(object)) = (self.facet.take(), self.object) else { return };
         self.lines.push(line);
-        if let Some(before) = before {
-            self.draft.refuse_face(place, format_args!("this facet has no `endfacet` before {before}"));
-        } else if ring.len() < 3 && !is_broken {
-            self.draft.refuse_face(place, format_args!("a facet takes 3 vertices, but here are {}", ring.len()));
-        } else if !is_broken {
-            self.draft.add_face(vec![ring], object, self.material);
-            return;
+        let end = match (before, &broken) {
+            (Some(before), _) => Some(format!("this facet has no `endfacet` before {before}")),
+            (None, None) if ring.len() < 3 => Some(format!("a facet takes 3 vertices, but here are {}", ring.len())),
+            (None, _) => None,
+        };
+        if let Some(what) = &end {
+            self.draft.refuse_face(Place::Line(line), what);
         }
-        self.draft.add_broken_face(object, self.material);
+        match broken.or(end) {
+            Some(why) => self.draft.add_broken_face(why, object, self.material),
+            None => self.draft.add_face(vec![ring], object, self.material),
+        }
     }
 
     fn finish(mut self) -> Result<Loaded, ReadError> {

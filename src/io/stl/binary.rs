@@ -35,7 +35,12 @@ pub(super) fn parse(bytes: &[u8], mut draft: Draft<'_>) -> Result<Loaded, ReadEr
     for (k, triangle) in triangles.take(count).enumerate() {
         // After the normal.
         let corner = |c: usize| DVec3::from([0, 4, 8].map(|at| single(triangle, 12 + 12 * c + at)));
-        let ring = [0, 1, 2].map(|c| draft.add_vertex(corner(c), || item(k)));
+        let corners = [0, 1, 2].map(corner);
+        // Once for all corners.
+        if !corners.iter().all(|p| p.is_finite()) {
+            draft.refuse_vertex(item(k), "a coordinate is not finite; correct it");
+        }
+        let ring = corners.map(|p| draft.builder.add_vertex(p));
         draft.add_face(vec![ring.to_vec()], object, material);
     }
     draft.finish(item, |_| None)

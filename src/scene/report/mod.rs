@@ -3,8 +3,10 @@
 mod clip;
 mod components;
 mod edges;
+mod halves;
 mod overlaps;
 mod planarity;
+mod planes;
 mod t_junctions;
 mod tree;
 mod volume;
@@ -46,8 +48,8 @@ pub struct MeshReport {
     pub inverted: Vec<PolygonId>,
     /// Pairs of polygons that lie on each other in exactly one plane, by their numbers. Duplicates do.
     pub overlaps: Vec<CoplanarOverlap>,
-    /// False if the search for overlaps was given up, with a hundred thousand found or after comparing fifty million
-    /// pairs of pieces whose boxes meet.
+    /// False if the search for overlaps was given up, with a hundred thousand found or after fifty million comparisons and
+    /// two hundred more for each piece: many polygons in one plane that no lines tell apart.
     pub all_overlaps: bool,
 }
 
@@ -149,8 +151,8 @@ pub struct CoplanarOverlap {
 }
 
 impl Scene {
-    /// Looks over the mesh. Expected time n log n in the number of vertices, and linear in the number of pairs of
-    /// pieces whose bounding boxes overlap, up to a limit.
+    /// Looks over the mesh. Expected time n log n in the number of vertices, and linear in the number of vertices near edges and
+    /// of pairs of pieces in one plane that lines do not separate, up to limits.
     ///
     /// ```
     /// use nusselt::scene::{Material, Scene};

@@ -1,59 +1,102 @@
 //! Polygons that lie on each other in one plane.
 
 use super::super::flat::{axes_by_size, orientation, project, triangle_normal, unit_scale, unscaled};
-use super::super::{Axis, PieceRef, Scene, Side, SupportingPlane};
+use super::super::{Axis, PieceId, PieceRef, Scene, Side, SupportingPlane};
 use super::CoplanarOverlap;
 use super::clip::shared_area;
-use super::tree::{Aabb, BoxTree, bounds};
+use super::halves::Halving;
+use super::planes;
+use super::tree::{Aabb, bounds};
 use crate::exact::{Sign, orient3d};
 use glam::{DVec2, DVec3};
+use std::collections::BTreeSet;
 
 /// So many overlapping pairs of pieces are kept.
 const MAX_FOUND: usize = 100_000;
-/// So much work is done: pairs of pieces that are compared, and in one plane, pairs of their vertices.
+/// So much work is done, and so much more for each piece: pairs of pieces and of their vertices that are compared, and
+/// corners and boxes that are put on sides of lines.
 const MAX_WORK: usize = 50_000_000;
+const MAX_WORK_PER_PIECE: usize = 200;
+/// So many pieces are not halved any more.
+const FEW: usize = 8;
 
 /// The pairs of polygons whose insides share area in one plane, by polygons; false if the search was given up.
 pub(super) fn overlaps(scene: &Scene) -> (Vec<CoplanarOverlap>, bool) {
-    let views: Vec<View> = scene.planes().iter().map(|&plane| View::new(scene, plane)).collect();
     let boxes: Vec<Aabb> = scene.pieces().map(|piece| bounds(piece.points())).collect();
     let scale = unit_scale(scene.vertices().iter().copied());
-    let tree = BoxTree::new(&boxes);
-    let mut parts = Vec::new();
-    let mut near = Vec::new();
-    let mut work = 0;
-    let mut complete = true;
-    'search: for piece in scene.pieces() {
-        let own = boxes[piece.id().index()];
-        near.clear();
-        tree.visit(
-            |other| may_share_area(own, other),
-            |other| {
-                if other > piece.id().0 && may_share_area(own, boxes[other as usize]) {
-                    near.push(super::super::PieceId(other));
-                }
-            },
-        );
-        for &other in &near {
-            let other = scene.piece(other);
-            let pair = [piece, other];
-            work += 1;
-            if is_coplanar(scene, pair) && piece.polygon() != other.polygon() {
-                work += piece.vertices().len() * other.vertices().len();
-                let view = &views[piece.plane_id().index()];
-                if insides_meet(view, pair) {
-                    let opposed = view.turn(piece) != view.turn(other);
-                    let area = view.area(pair, scale);
-                    parts.push(CoplanarOverlap { polygons: pair.map(PieceRef::polygon), opposed, area });
-                }
+    let mut search = Search { scene, boxes, found: BTreeSet::new(), work: 0 };
+    let complete = planes::groups(scene).into_iter().all(|group| search.visit_group(group));
+    let parts = search.found.iter().map(|&pair| {
+        let pair = pair.map(|id| scene.piece(id));
+        let view = View::new(scene, pair[0].plane());
+        let opposed = view.turn(pair[0]) != view.turn(pair[1]);
+        CoplanarOverlap { polygons: pair.map(PieceRef::polygon), opposed, area: view.area(pair, scale) }
+    });
+    (merged(parts.collect()), complete)
+}
+
+struct Search<'a> {
+    scene: &'a Scene,
+    /// Around each piece.
+    boxes: Vec<Aabb>,
+    /// The pairs of pieces that share area, lower numbers first.
+    found: BTreeSet<[PieceId; 2]>,
+    work: usize,
+}
+
+impl Search<'_> {
+    /// Finds the pairs in a group of pieces, which ascend; false if the search was given up.
+    fn visit_group(&mut self, group: Vec<PieceId>) -> bool {
+        let Some(&first) = group.first() else { return true };
+        let axis = View::new(self.scene, self.scene.piece(first).plane()).axis;
+        let polygon = |piece: &PieceId| self.scene.piece(*piece).polygon();
+        let mut jobs = vec![group];
+        while let Some(pieces) = jobs.pop() {
+            // They ascend by polygons, too; those of one polygon do not overlap.
+            if pieces.first().map(polygon) == pieces.last().map(polygon) {
+                continue;
             }
-            if work > MAX_WORK || parts.len() >= MAX_FOUND {
-                complete = false;
-                break 'search;
+            let halving = Halving { scene: self.scene, boxes: &self.boxes, axis };
+            let halves = (pieces.len() > FEW).then(|| halving.halves(&pieces, &mut self.work)).flatten();
+            match halves {
+                Some(halves) => jobs.extend(halves),
+                None => self.compare_all(&pieces),
+            }
+            if self.is_given_up() {
+                return false;
+            }
+        }
+        true
+    }
+
+    fn compare_all(&mut self, pieces: &[PieceId]) {
+        for (k, &piece) in pieces.iter().enumerate() {
+            for &other in &pieces[k + 1..] {
+                if self.is_given_up() {
+                    return;
+                }
+                self.compare([piece, other]);
             }
         }
     }
-    (merged(parts), complete)
+
+    fn compare(&mut self, ids: [PieceId; 2]) {
+        self.work += 1;
+        let pair = ids.map(|id| self.scene.piece(id));
+        let [own, other] = ids.map(|id| self.boxes[id.index()]);
+        if pair[0].polygon() == pair[1].polygon() || !may_share_area(own, other) || !is_coplanar(self.scene, pair) {
+            return;
+        }
+        self.work += pair[0].vertices().len() * pair[1].vertices().len();
+        if insides_meet(&View::new(self.scene, pair[0].plane()), pair) {
+            self.found.insert(ids);
+        }
+    }
+
+    fn is_given_up(&self) -> bool {
+        let most = MAX_WORK.saturating_add(MAX_WORK_PER_PIECE.saturating_mul(self.boxes.len()));
+        self.work > most || self.found.len() >= MAX_FOUND
+    }
 }
 
 /// One entry for each pair of polygons, with the area of all.

@@ -145,7 +145,7 @@ impl Contour {
             summary.certificate = Some(proof.certificate.into());
         }
         for output in &self.output {
-            self.write(output, projection, &image, &summary)?;
+            self.write(output, projection, &image, &summary, common)?;
         }
         if common.json {
             return print_json(&report::Printed::new(&summary, timing, &image));
@@ -213,6 +213,7 @@ impl Contour {
         projection: Projection,
         image: &ContourImage,
         summary: &ContourSummary<'_>,
+        common: &Common,
     ) -> Result<(), Failure> {
         let path: &Path = &output.path;
         match output.format {
@@ -224,7 +225,17 @@ impl Contour {
             }
             Format::Geojson => {
                 let projector = projector(image, projection)?;
-                write_file(path, |out| write_geojson(image, &projector, Projector::TOLERANCE, out))
+                let mut tangled = 0;
+                write_file(path, |out| {
+                    tangled = write_geojson(image, &projector, Projector::TOLERANCE, out)?;
+                    Ok(())
+                })?;
+                if tangled > 0 {
+                    let what = "their points are rounded, and they have the property `tangled`";
+                    let path = path.display();
+                    common.warn(&format!("{path}: the rings of {tangled} features may touch or cross: {what}"));
+                }
+                Ok(())
             }
             Format::Obj => write_obj(path, &visible_groups(image), image.scene()),
         }

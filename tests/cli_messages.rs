@@ -1,0 +1,154 @@
+//! What the program says about files it cannot use, or uses in part.
+#![cfg(feature = "cli")]
+
+use serde_json::{Value, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Self {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("messages-{name}-{}", std::process::id()));
+        // Left over from a run that was stopped.
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).expect("a folder for tests");
+        Self(path)
+    }
+
+    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
+        fs::write(self.0.join(name), bytes).expect("writable");
+    }
+
+    /// What the program prints on stdout and stderr.
+    fn run(&self, line: &str, code: i32) -> [String; 2] {
+        let program = Command::new(env!("CARGO_BIN_EXE_nusselt"))
+            .args(line.split_whitespace())
+            .current_dir(&self.0)
+            .output()
+            .expect("the program runs");
+        let [out, err] = [program.stdout, program.stderr].map(|bytes| String::from_utf8(bytes).expect("UTF-8"));
+        assert_eq!(program.status.code(), Some(code), "{line}\n{out}\n{err}");
+        [out, err]
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A triangle, and one with a number that is none: binary.
+fn stl() -> Vec<u8> {
+    let mut bytes = vec![b' '; 80];
+    bytes.extend(2_u32.to_le_bytes());
+    for third in [1.0, f32::NAN] {
+        let numbers: [f32; 12] = [0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1., third];
+        bytes.extend(numbers.iter().flat_map(|number| number.to_le_bytes()));
+        bytes.extend([0; 2]);
+    }
+    bytes
+}
+
+/// The first triangle of a primitive is fine; the second one names a vertex that is not there.
+fn gltf() -> Value {
+    json!({
+        "asset": { "version": "2.0" },
+        "scene": 0,
+        "scenes": [{ "nodes": [0] }],
+        "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "indices": 1 }] }],
+        "accessors": [
+            { "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
+            { "bufferView": 1, "componentType": 5121, "count": 6, "type": "SCALAR" }
+        ],
+        "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": 36, "byteLength": 6 }],
+        "buffers": [{ "byteLength": 42, "uri": "x.bin" }]
+    })
+}
+
+fn cityjson() -> Value {
+    json!({
+        "type": "CityJSON", "version": "2.0", "vertices": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
+        "transform": { "scale": [1, 1, 1], "translate": [0, 0, 0] },
+        "CityObjects": { "a": { "type": "Building", "geometry": [
+            { "type": "MultiSurface", "lod": "2", "boundaries": [[[0, 1, 2]], [[0, 1, 7]]] }
+        ] } }
+    })
+}
+
+#[test]
+fn dropped_faces_keep_the_first_cause_in_all_formats() {
+    let folder = Folder::new("causes");
+    let corners: [f32; 9] = [0., 0., 0., 1., 0., 0., 0., 1., 0.];
+    let mut bytes: Vec<u8> = corners.iter().flat_map(|number| number.to_le_bytes()).collect();
+    bytes.extend([0, 1, 2, 0, 1, 9]);
+    folder.write("x.bin", bytes);
+    let ply = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+               element face 2\nproperty list uchar float vertex_indices\nend_header\n\
+               0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 1.5\n";
+    let solid = "solid\nfacet vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endfacet\nfacet\nvertex 0 0 0\nvertex 1 y 0\n\
+                 vertex 0 z 0\nendsolid\n";
+    for (name, bytes, cause) in [
+        ("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 x y\n".into(), "cannot be read: `x` "),
+        ("a.ply", ply.into(), "cannot be read: 1.5 "),
+        ("a.stl", solid.into(), "cannot be read: `y` is not a number"),
+        ("b.stl", stl(), "vertex 5 has a coordinate that is not finite"),
+        ("a.gltf", gltf().to_string().into(), "cannot be read: there is no vertex 9; the primitive has 3"),
+        ("a.json", cityjson().to_string().into(), "cannot be read: "),
+    ] {
+        folder.write(name, bytes);
+        let [out, err] = folder.run(&format!("info {name} --json --repair malformed=drop"), 0);
+        let info: Value = serde_json::from_str(&out).expect("JSON");
+        assert_eq!(info["polygons"], 2, "{name}");
+        let dropped = &info["repairs"]["dropped"]["malformed"];
+        assert_eq!((&dropped["count"], &dropped["first"][0]["polygon"]), (&json!(1), &json!(1)), "{name}");
+        let problem = dropped["first"][0]["problem"].as_str().expect("text");
+        assert!(problem.contains(cause), "{name}: {problem}");
+        // The warning of the reader gives the same cause.
+        if let Some((_, cause)) = problem.split_once("cannot be read: ") {
+            assert!(err.contains(cause), "{name}: {cause}\n{err}");
+        }
+        let [_, err] = folder.run(&format!("info {name}"), 1);
+        assert!(err.starts_with(&format!("nusselt: {name}:")), "{err}");
+    }
+    let [_, err] = folder.run("info b.stl", 1);
+    assert_eq!(err, "nusselt: b.stl: triangle 1: a coordinate is not finite; correct it\n");
+}
+
+#[test]
+fn missing_files_come_with_advice() {
+    let folder = Folder::new("missing");
+    let advice = "; check the name and the folder\n";
+    let [_, err] = folder.run("info nowhere.obj", 1);
+    assert!(err.starts_with("nusselt: cannot read nowhere.obj: ") && err.ends_with(advice), "{err}");
+    folder.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let [_, err] = folder.run("verify a.obj nowhere.json", 1);
+    assert!(err.starts_with("nusselt: cannot read nowhere.json: ") && err.ends_with(advice), "{err}");
+    folder.write("a.gltf", gltf().to_string());
+    let [_, err] = folder.run("info a.gltf", 1);
+    assert!(err.contains("cannot read `x.bin`: ") && err.ends_with(advice), "{err}");
+}
+
+#[test]
+fn lists_nested_too_deep_are_told_in_plain_words() {
+    let folder = Folder::new("nested");
+    let mut city = cityjson().to_string();
+    city = city.replace("[[[0,1,2]]", &format!("[{}0{}", "[".repeat(200), "]".repeat(200)));
+    folder.write("a.json", city);
+    let [_, err] = folder.run("info a.json", 1);
+    assert!(err.contains("lists and objects are nested too deep, more than 127 levels; flatten them"), "{err}");
+    assert_eq!(err.lines().count(), 1);
+}
+
+#[test]
+fn numbers_of_materials_are_named_with_their_line() {
+    let folder = Folder::new("materials");
+    folder.write("a.mtl", "newmtl grey\nKd 1 1 1\nnewmtl \u{1b}lamp\nKe 1 -2 1\n");
+    folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl \u{1b}lamp\nf 1 2 3\n");
+    let [_, err] = folder.run("info a.obj", 1);
+    let what = "the emission of material \"\\u{1b}lamp\" is -2; it takes a finite number of at least 0";
+    assert_eq!(err, format!("nusselt: a.mtl:3: {what}\n"));
+}
