@@ -253,13 +253,15 @@ impl ContourTree {
         if half.inside().is_positive() { [Some(positive), Some(leaf)] } else { [Some(leaf), Some(positive)] }
     }
 
-    /// Puts in a convex spherical polygon, which is all on the side of `top` where that is: it fills what is open
-    /// of its inside, and what `judge` takes for it from the pieces that are there.
+    /// Puts in a convex spherical polygon, which is all on the side of `top` where that is and within the projection of `seen`: it
+    /// fills what is open of its inside, and what `judge` takes for it from the pieces that are there.
+    #[allow(clippy::too_many_arguments, reason = "the parts of a view are borrowed apart")]
     pub(crate) fn insert(
         &mut self,
         skeleton: &Skeleton,
         top: Link,
         polygon: &[PolygonArc],
+        seen: &SeenBox,
         filler: &Filler,
         mut judge: impl FnMut(&mut Directions, &mut Knife, PieceId, &[PolygonArc]) -> Verdict,
         work: &mut Workspace,
@@ -269,8 +271,9 @@ impl ContourTree {
         work.stack.clear();
         work.stack.push((top, 0, polygon.len()));
         while let Some((link, start, len)) = work.stack.pop() {
-            let node = match link {
-                Link::Leaf(leaf) => {
+            let node = match self.descend(link, seen, filler.near, &mut work.visited) {
+                None => continue,
+                Some(Link::Leaf(leaf)) => {
                     let Leaf { state, far, .. } = self.leaves[leaf as usize];
                     let verdict = match state {
                         LeafState::Filled(piece) if far > filler.near => {
@@ -287,13 +290,9 @@ impl ContourTree {
                     self.fill(skeleton, leaf, range, filler, work);
                     continue;
                 }
-                Link::Node(node) => &self.nodes[node as usize],
+                Some(Link::Node(node)) => node,
             };
-            if node.far <= filler.near {
-                continue;
-            }
-            work.visited += 1;
-            let (circle, negative, positive) = (node.circle, node.negative, node.positive);
+            let TreeNode { circle, negative, positive, .. } = self.nodes[node as usize];
             let part = &work.arcs[start..start + len];
             if let Some(side) = part.iter().find(|arc| arc.along.circle() == circle) {
                 let child = if side.along.inside().is_positive() { positive } else { negative };
@@ -326,6 +325,24 @@ impl ContourTree {
                 }
             }
         }
+    }
+
+    /// Goes down from a link as long as the box is certainly on one side: to a leaf, or to a node whose great circle may meet the box;
+    /// `None` if nothing from `near` on can be seen there.
+    #[inline]
+    fn descend(&self, mut link: Link, seen: &SeenBox, near: f64, visited: &mut u64) -> Option<Link> {
+        while let Link::Node(number) = link {
+            let node = &self.nodes[number as usize];
+            if node.far <= near {
+                return None;
+            }
+            *visited += 1;
+            match seen.side(self.directions.normal(node.circle)) {
+                Some(side) => link = if side.is_positive() { node.positive } else { node.negative },
+                None => break,
+            }
+        }
+        Some(link)
     }
 
     /// The part of a polygon, classified last, within a half sphere.

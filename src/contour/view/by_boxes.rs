@@ -96,7 +96,9 @@ impl Walk<'_> {
         }
         sight.look_at(piece, hierarchy.sides(id), shown);
         sight.stats.inserted += 1;
-        let near = distance_to_box(eye, &hierarchy.bounds[id.index()]);
+        let bounds = &hierarchy.bounds[id.index()];
+        let seen = SeenBox::new(eye, bounds.low, bounds.high);
+        let near = distance_to_box(eye, bounds);
         let far = piece.points().fold(0.0, |far, p| f64::max(far, distance_bound(eye, p)));
         let filler = Filler { piece: id, near, far };
         let mut rivals = Rivals { hierarchy, eye, piece, shown, last: None, creases };
@@ -104,7 +106,7 @@ impl Walk<'_> {
         let judge = |directions: &mut Directions, knife: &mut Knife, old: PieceId, part: &[PolygonArc]| {
             rivals.judge(directions, knife, old, part)
         };
-        contour.insert(&hierarchy.skeleton, top, polygon, &filler, judge, work);
+        contour.insert(&hierarchy.skeleton, top, polygon, &seen, &filler, judge, work);
     }
 }
 

@@ -5,7 +5,7 @@ use super::super::image::{ContourImage, Source};
 use super::super::tree::{Filler, Verdict};
 use super::super::viewpoint::Viewpoint;
 use super::{Sight, ViewError, ViewOptions};
-use crate::bsp::{FragmentId, SceneBsp, Step, Tree};
+use crate::bsp::{FragmentId, SceneBsp, Step, Tree, bounds_of};
 use crate::exact::SeenBox;
 
 impl SceneBsp {
@@ -73,9 +73,12 @@ fn insert(sight: &mut Sight<'_>, tree: &Tree, id: FragmentId) {
     let fragment = tree.fragments[id.index()];
     let piece = tree.scene.piece(fragment.piece);
     let Some(shown) = tree.skeleton.shown_side(piece, sight.eye) else { return };
-    sight.look_at(piece, &tree.sides[fragment.range()], shown);
+    let sides = &tree.sides[fragment.range()];
+    sight.look_at(piece, sides, shown);
     sight.stats.inserted += 1;
+    let bounds = bounds_of(&tree.skeleton, sides);
+    let seen = SeenBox::new(sight.eye, bounds.low, bounds.high);
     let filler = Filler { piece: fragment.piece, near: 0.0, far: 0.0 };
     let Sight { contour, work, polygon, .. } = sight;
-    contour.insert(&tree.skeleton, contour.root, polygon, &filler, |_, _, _, _| Verdict::Behind, work);
+    contour.insert(&tree.skeleton, contour.root, polygon, &seen, &filler, |_, _, _, _| Verdict::Behind, work);
 }
