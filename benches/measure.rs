@@ -6,7 +6,9 @@
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
-use nusselt::contour::{ContourImage, Domain, Projection, Projector, ViewError, ViewOptions, Viewpoint, VisibleRegion};
+use nusselt::contour::{
+    ContourImage, Domain, Projection, Projector, ViewError, ViewOptions, ViewSpace, Viewpoint, VisibleRegion,
+};
 use nusselt::samples::{Kind, generate};
 use std::error::Error;
 use std::time::Instant;
@@ -64,28 +66,29 @@ fn row(kind: Kind, polygons: usize, depth: Option<u32>, floor: bool, ways: &[Way
             Way::Bsp => {
                 let bsp = SceneBsp::build(&scene, &BspOptions::default())?;
                 print!("| {kind} | {polygons} | BSP | {:.3} ", start.elapsed().as_secs_f64());
-                views(&points, |eye| bsp.view_with(eye, &domain, &options))?;
+                views(&points, |eye, space| bsp.view_in(space, eye, &domain, &options))?;
             }
             Way::Boxes => {
                 let boxes = SceneBvh::build(&scene);
                 print!("| {kind} | {polygons} | boxes | {:.3} ", start.elapsed().as_secs_f64());
-                views(&points, |eye| boxes.view_with(eye, &domain, &options))?;
+                views(&points, |eye, space| boxes.view_in(space, eye, &domain, &options))?;
             }
         }
     }
     Ok(())
 }
 
-/// The rest of a row, for one way.
+/// The rest of a row, for one way; each view in the memory of the one before.
 fn views(
     points: &[[f64; 3]],
-    see: impl Fn(&Viewpoint) -> Result<ContourImage, ViewError>,
+    see: impl for<'s> Fn(&Viewpoint, &'s mut ViewSpace) -> Result<&'s ContourImage, ViewError>,
 ) -> Result<(), Box<dyn Error>> {
     let (mut view, mut longest, mut factors, mut worst) = (0.0, 0.0f64, 0.0, 0.0f64);
     let mut counts = [0; 7];
+    let mut space = ViewSpace::new();
     for point in points {
         let start = Instant::now();
-        let image = see(&Viewpoint::free(DVec3::from(*point)))?;
+        let image = see(&Viewpoint::free(DVec3::from(*point)), &mut space)?;
         let time = start.elapsed().as_secs_f64();
         let sums = image.form_factors().ok_or("a hemisphere has a normal")?;
         factors += start.elapsed().as_secs_f64() - time;

@@ -73,6 +73,15 @@ impl ExactCache {
         self.calls += calls as u64;
     }
 
+    /// Forgets everything but the memory.
+    pub(crate) fn clear(&mut self) {
+        let Self { arena, normals, points, undecided, calls } = self;
+        arena.clear();
+        normals.clear();
+        points.clear();
+        (*undecided, *calls) = (PredicateStats::default(), 0);
+    }
+
     /// What all calls took.
     pub(crate) fn predicates(&self) -> PredicateStats {
         PredicateStats { filter: self.calls - self.undecided.undecided(), ..self.undecided }
@@ -92,15 +101,18 @@ impl ExactCache {
 }
 
 impl Directions {
-    pub(crate) fn new(skeleton: &Skeleton, eye: DVec3) -> Self {
-        Self {
-            eye,
-            frame: Frame::new(skeleton.bits, eye),
-            circles: Vec::new(),
-            normals: Vec::new(),
-            zeros: Vec::new(),
-            kept: Vec::new(),
-        }
+    /// None yet. The memory of other ones is used again.
+    pub(crate) fn new(skeleton: &Skeleton, eye: DVec3, former: Option<Self>) -> Self {
+        let frame = Frame::new(skeleton.bits, eye);
+        let Some(mut former) = former else {
+            let (circles, normals, zeros, kept) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+            return Self { eye, frame, circles, normals, zeros, kept };
+        };
+        former.circles.clear();
+        former.normals.clear();
+        former.zeros.clear();
+        former.kept.clear();
+        Self { eye, frame, ..former }
     }
 
     fn push_circle(

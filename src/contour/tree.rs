@@ -91,17 +91,40 @@ pub(crate) struct Workspace {
     pub(crate) visited: u64,
 }
 
+impl Workspace {
+    /// For another view. What insertions leave behind they clear themselves.
+    pub(crate) fn clear(&mut self) {
+        self.knife.cache.clear();
+        self.visited = 0;
+    }
+}
+
 impl ContourTree {
-    /// The whole sphere, cut into octants by the coordinate planes.
-    pub(crate) fn octants(skeleton: &Skeleton, mut directions: Directions, knife: &mut Knife) -> Self {
+    /// The whole sphere seen from `eye`, cut into octants by the coordinate planes. The memory of another tree is used again.
+    pub(crate) fn octants(skeleton: &Skeleton, eye: DVec3, former: Option<Self>, knife: &mut Knife) -> Self {
+        let mut tree = match former {
+            None => Self {
+                directions: Directions::new(skeleton, eye, None),
+                nodes: Vec::new(),
+                leaves: Vec::new(),
+                root: Link::Node(0),
+                arcs: Vec::new(),
+            },
+            Some(Self { directions, mut nodes, mut leaves, mut arcs, .. }) => {
+                nodes.clear();
+                leaves.clear();
+                arcs.clear();
+                let directions = Directions::new(skeleton, eye, Some(directions));
+                Self { directions, nodes, leaves, root: Link::Node(0), arcs }
+            }
+        };
+        let directions = &mut tree.directions;
         let planes = DVec3::AXES.map(|n| directions.push_given(skeleton, n, &mut knife.cache));
         let mut poles = [[DirectionId(0); 2]; 3];
         for (axis, pole) in poles.iter_mut().enumerate() {
             let circles = [planes[(axis + 1) % 3], planes[(axis + 2) % 3]];
             *pole = [false, true].map(|r| directions.push_crossing(skeleton, circles, r, &mut knife.cache));
         }
-        let mut tree =
-            Self { directions, nodes: Vec::new(), leaves: Vec::new(), root: Link::Node(0), arcs: Vec::new() };
         tree.octant_node(planes, poles, &mut Vec::new(), None);
         tree
     }
