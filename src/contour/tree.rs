@@ -439,14 +439,13 @@ impl ContourTree {
             );
             let node = self.nodes.len() as u32;
             self.replace(parent, here, Link::Node(node));
-            let (outside, kept) =
-                if inside.is_positive() { (&work.negative, &work.positive) } else { (&work.positive, &work.negative) };
+            let Workspace { negative: below, positive: above, region, .. } = &mut *work;
+            let (outside, kept) = if inside.is_positive() { (below, above) } else { (above, below) };
+            std::mem::swap(region, kept);
             let outside = self.push_leaf(outside, Some(node));
             if let Some(last) = self.leaves.last_mut() {
                 (last.state, last.far) = (state, far);
             }
-            work.region.clear();
-            work.region.extend_from_slice(kept);
             here = Link::Leaf(leaf);
             let (negative, positive) = if inside.is_positive() { (outside, here) } else { (here, outside) };
             self.nodes.push(TreeNode { circle, negative, positive, parent, far });
