@@ -1,11 +1,14 @@
 //! The tables of docs/performance.md: `cargo bench --bench measure`, or for one scene
 //! `cargo bench --bench measure -- room 50000 [quadtree depth]`; `floor` for a depth looks from points on
-//! the floor instead of points in the air. Every scene has two rows: seen by its 3D BSP, and by a hierarchy of boxes. `cargo bench --bench measure -- regions` is the table of visible regions.
+//! the floor instead of points in the air. Every scene has two rows: seen by its 3D BSP, and by a hierarchy of boxes;
+//! `bsp` or `boxes` for a depth leaves the other one out. `cargo bench --bench measure -- regions` is the table of visible regions.
 
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
-use nusselt::contour::{ContourImage, Domain, Projection, Projector, ViewError, ViewOptions, Viewpoint, VisibleRegion};
+use nusselt::contour::{
+    ContourImage, Domain, Projection, Projector, ViewError, ViewOptions, ViewSpace, Viewpoint, VisibleRegion,
+};
 use nusselt::samples::{Kind, generate};
 use std::error::Error;
 use std::time::Instant;
@@ -25,44 +28,67 @@ fn main() -> Result<(), Box<dyn Error>> {
         "| --- | ---: | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"
     );
     if let [kind, polygons, rest @ ..] = words.as_slice() {
-        let floor = rest.first().is_some_and(|word| word == "floor");
-        let depth = rest.first().filter(|_| !floor).map(|depth| depth.parse()).transpose()?;
-        return row(kind.parse()?, polygons.parse()?, depth, floor);
+        let (kind, polygons) = (kind.parse()?, polygons.parse()?);
+        return match rest.first().map(String::as_str) {
+            None => row(kind, polygons, None, false, Way::BOTH),
+            Some("floor") => row(kind, polygons, None, true, Way::BOTH),
+            Some("bsp") => row(kind, polygons, None, false, &[Way::Bsp]),
+            Some("boxes") => row(kind, polygons, None, false, &[Way::Boxes]),
+            Some(depth) => row(kind, polygons, Some(depth.parse()?), false, Way::BOTH),
+        };
     }
     for kind in Kind::ALL {
         for polygons in [1_000, 10_000, 50_000] {
-            row(kind, polygons, None, false)?;
+            row(kind, polygons, None, false, Way::BOTH)?;
         }
     }
     Ok(())
 }
 
-fn row(kind: Kind, polygons: usize, depth: Option<u32>, floor: bool) -> Result<(), Box<dyn Error>> {
+enum Way {
+    Bsp,
+    Boxes,
+}
+
+impl Way {
+    const BOTH: &[Self] = &[Self::Bsp, Self::Boxes];
+}
+
+fn row(kind: Kind, polygons: usize, depth: Option<u32>, floor: bool, ways: &[Way]) -> Result<(), Box<dyn Error>> {
     let mesh = generate(kind, polygons, 1)?;
     let scene = mesh.to_builder().build()?;
     let options = ViewOptions { quadtree_depth: depth, ..ViewOptions::default() };
     let points = if floor { mesh.floor_points(VIEWS, 3) } else { mesh.free_points(VIEWS, 3) };
     let domain = Domain::Hemisphere(DVec3::Z);
-    let start = Instant::now();
-    let bsp = SceneBsp::build(&scene, &BspOptions::default())?;
-    print!("| {kind} | {polygons} | BSP | {:.3} ", start.elapsed().as_secs_f64());
-    views(&points, |eye| bsp.view_with(eye, &domain, &options))?;
-    let start = Instant::now();
-    let boxes = SceneBvh::build(&scene);
-    print!("| {kind} | {polygons} | boxes | {:.3} ", start.elapsed().as_secs_f64());
-    views(&points, |eye| boxes.view_with(eye, &domain, &options))
+    for way in ways {
+        let start = Instant::now();
+        match way {
+            Way::Bsp => {
+                let bsp = SceneBsp::build(&scene, &BspOptions::default())?;
+                print!("| {kind} | {polygons} | BSP | {:.3} ", start.elapsed().as_secs_f64());
+                views(&points, |eye, space| bsp.view_in(space, eye, &domain, &options))?;
+            }
+            Way::Boxes => {
+                let boxes = SceneBvh::build(&scene);
+                print!("| {kind} | {polygons} | boxes | {:.3} ", start.elapsed().as_secs_f64());
+                views(&points, |eye, space| boxes.view_in(space, eye, &domain, &options))?;
+            }
+        }
+    }
+    Ok(())
 }
 
-/// The rest of a row, for one way.
+/// The rest of a row, for one way; each view in the memory of the one before.
 fn views(
     points: &[[f64; 3]],
-    see: impl Fn(&Viewpoint) -> Result<ContourImage, ViewError>,
+    see: impl for<'s> Fn(&Viewpoint, &'s mut ViewSpace) -> Result<&'s ContourImage, ViewError>,
 ) -> Result<(), Box<dyn Error>> {
     let (mut view, mut longest, mut factors, mut worst) = (0.0, 0.0f64, 0.0, 0.0f64);
     let mut counts = [0; 7];
+    let mut space = ViewSpace::new();
     for point in points {
         let start = Instant::now();
-        let image = see(&Viewpoint::free(DVec3::from(*point)))?;
+        let image = see(&Viewpoint::free(DVec3::from(*point)), &mut space)?;
         let time = start.elapsed().as_secs_f64();
         let sums = image.form_factors().ok_or("a hemisphere has a normal")?;
         factors += start.elapsed().as_secs_f64() - time;

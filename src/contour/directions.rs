@@ -51,7 +51,9 @@ pub(crate) struct Directions {
     normals: Vec<Approx3>,
     /// The components of the normals that are 0 by definition.
     zeros: Vec<ZeroComponents>,
-    kept: Vec<LooseDirection>,
+    /// The directions that were kept: their definitions, and apart, as nearly all questions need only them, their approximations.
+    definitions: Vec<DirectionDef>,
+    approximations: Vec<Approx3>,
 }
 
 /// Integers that were needed once and may be needed again.
@@ -73,6 +75,15 @@ impl ExactCache {
         self.calls += calls as u64;
     }
 
+    /// Forgets everything but the memory.
+    pub(crate) fn clear(&mut self) {
+        let Self { arena, normals, points, undecided, calls } = self;
+        arena.clear();
+        normals.clear();
+        points.clear();
+        (*undecided, *calls) = (PredicateStats::default(), 0);
+    }
+
     /// What all calls took.
     pub(crate) fn predicates(&self) -> PredicateStats {
         PredicateStats { filter: self.calls - self.undecided.undecided(), ..self.undecided }
@@ -92,15 +103,27 @@ impl ExactCache {
 }
 
 impl Directions {
-    pub(crate) fn new(skeleton: &Skeleton, eye: DVec3) -> Self {
-        Self {
-            eye,
-            frame: Frame::new(skeleton.bits, eye),
-            circles: Vec::new(),
-            normals: Vec::new(),
-            zeros: Vec::new(),
-            kept: Vec::new(),
-        }
+    /// None yet. The memory of other ones is used again.
+    pub(crate) fn new(skeleton: &Skeleton, eye: DVec3, former: Option<Self>) -> Self {
+        let frame = Frame::new(skeleton.bits, eye);
+        let Some(former) = former else {
+            return Self {
+                eye,
+                frame,
+                circles: Vec::new(),
+                normals: Vec::new(),
+                zeros: Vec::new(),
+                definitions: Vec::new(),
+                approximations: Vec::new(),
+            };
+        };
+        let Self { mut circles, mut normals, mut zeros, mut definitions, mut approximations, .. } = former;
+        circles.clear();
+        normals.clear();
+        zeros.clear();
+        definitions.clear();
+        approximations.clear();
+        Self { eye, frame, circles, normals, zeros, definitions, approximations }
     }
 
     fn push_circle(
@@ -172,8 +195,9 @@ impl Directions {
     }
 
     fn push(&mut self, direction: LooseDirection) -> DirectionId {
-        self.kept.push(direction);
-        DirectionId(self.kept.len() as u32 - 1)
+        self.definitions.push(direction.definition);
+        self.approximations.push(direction.approx);
+        DirectionId(self.definitions.len() as u32 - 1)
     }
 
     /// The direction `n_1 x n_2`, or the opposite one.
@@ -202,13 +226,16 @@ impl Directions {
     }
 
     pub(crate) fn direction(&self, d: DirectionId) -> LooseDirection {
-        self.kept[d.0 as usize]
+        LooseDirection { definition: self.definitions[d.0 as usize], approx: self.approximations[d.0 as usize] }
     }
 
     /// On which side of the great circle the direction lies, exactly.
     #[inline]
     pub(crate) fn side(&self, skeleton: &Skeleton, d: DirectionId, c: CircleId, cache: &mut ExactCache) -> Sign {
-        self.side_of(skeleton, &self.kept[d.0 as usize], c, cache)
+        match self.approximations[d.0 as usize].dot_sign(&self.normals[c.0 as usize]) {
+            Some(sign) => sign,
+            None => self.undecided_side(skeleton, self.definitions[d.0 as usize], c, cache),
+        }
     }
 
     /// The same for a direction that was not kept.
@@ -322,7 +349,7 @@ impl Directions {
 
     /// The direction as a unit vector.
     pub(crate) fn unit(&self, d: DirectionId) -> DVec3 {
-        self.kept[d.0 as usize].approx.v.normalize_or_zero()
+        self.approximations[d.0 as usize].v.normalize_or_zero()
     }
 
     pub(crate) fn circle_count(&self) -> usize {

@@ -3,7 +3,7 @@
 use super::domain::Domain;
 use super::polygon::PolygonArc;
 use super::tree::{ContourTree, LeafState, Link};
-use super::view::ViewStats;
+use super::view::{CellBuffers, ViewStats};
 use super::viewpoint::Viewpoint;
 use crate::bsp::{SceneBsp, Skeleton, UncutSliver};
 use crate::bvh::SceneBvh;
@@ -50,9 +50,11 @@ impl ContourImage {
         domain: Domain,
         tree: ContourTree,
         stats: ViewStats,
+        CellBuffers { mut leaves, mut cell_of_leaf }: CellBuffers,
     ) -> Self {
-        let mut leaves = Vec::new();
-        let mut cell_of_leaf = Vec::with_capacity(tree.leaves.len());
+        leaves.clear();
+        cell_of_leaf.clear();
+        cell_of_leaf.reserve(tree.leaves.len());
         for (k, leaf) in tree.leaves.iter().enumerate() {
             let is_cell = leaf.state != LeafState::Outside;
             cell_of_leaf.push(is_cell.then_some(CellId(leaves.len() as u32)));
@@ -61,6 +63,11 @@ impl ContourImage {
             }
         }
         Self { source, viewpoint, domain, tree, leaves, cell_of_leaf, stats }
+    }
+
+    /// What another image can use again.
+    pub(super) fn into_memory(self) -> (ContourTree, CellBuffers) {
+        (self.tree, CellBuffers { leaves: self.leaves, cell_of_leaf: self.cell_of_leaf })
     }
 
     /// The scene that is seen.

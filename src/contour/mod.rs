@@ -33,5 +33,5 @@ pub use locate::{Location, Region};
 pub use neighbours::Neighbour;
 pub use projection::{FlatRegion, Projection, ProjectionError, Projector, ViewFrame, Window};
 pub use regions::{RegionLoop, RegionSide, VisibleRegion};
-pub use view::{ViewError, ViewOptions, ViewStats};
+pub use view::{ViewError, ViewOptions, ViewSpace, ViewStats};
 pub use viewpoint::{SurfaceError, Viewpoint};

@@ -91,17 +91,40 @@ pub(crate) struct Workspace {
     pub(crate) visited: u64,
 }
 
+impl Workspace {
+    /// For another view. What insertions leave behind they clear themselves.
+    pub(crate) fn clear(&mut self) {
+        self.knife.cache.clear();
+        self.visited = 0;
+    }
+}
+
 impl ContourTree {
-    /// The whole sphere, cut into octants by the coordinate planes.
-    pub(crate) fn octants(skeleton: &Skeleton, mut directions: Directions, knife: &mut Knife) -> Self {
+    /// The whole sphere seen from `eye`, cut into octants by the coordinate planes. The memory of another tree is used again.
+    pub(crate) fn octants(skeleton: &Skeleton, eye: DVec3, former: Option<Self>, knife: &mut Knife) -> Self {
+        let mut tree = match former {
+            None => Self {
+                directions: Directions::new(skeleton, eye, None),
+                nodes: Vec::new(),
+                leaves: Vec::new(),
+                root: Link::Node(0),
+                arcs: Vec::new(),
+            },
+            Some(Self { directions, mut nodes, mut leaves, mut arcs, .. }) => {
+                nodes.clear();
+                leaves.clear();
+                arcs.clear();
+                let directions = Directions::new(skeleton, eye, Some(directions));
+                Self { directions, nodes, leaves, root: Link::Node(0), arcs }
+            }
+        };
+        let directions = &mut tree.directions;
         let planes = DVec3::AXES.map(|n| directions.push_given(skeleton, n, &mut knife.cache));
         let mut poles = [[DirectionId(0); 2]; 3];
         for (axis, pole) in poles.iter_mut().enumerate() {
             let circles = [planes[(axis + 1) % 3], planes[(axis + 2) % 3]];
             *pole = [false, true].map(|r| directions.push_crossing(skeleton, circles, r, &mut knife.cache));
         }
-        let mut tree =
-            Self { directions, nodes: Vec::new(), leaves: Vec::new(), root: Link::Node(0), arcs: Vec::new() };
         tree.octant_node(planes, poles, &mut Vec::new(), None);
         tree
     }
@@ -253,13 +276,15 @@ impl ContourTree {
         if half.inside().is_positive() { [Some(positive), Some(leaf)] } else { [Some(leaf), Some(positive)] }
     }
 
-    /// Puts in a convex spherical polygon, which is all on the side of `top` where that is: it fills what is open
-    /// of its inside, and what `judge` takes for it from the pieces that are there.
+    /// Puts in a convex spherical polygon, which is all on the side of `top` where that is and within the projection of `seen`: it
+    /// fills what is open of its inside, and what `judge` takes for it from the pieces that are there.
+    #[allow(clippy::too_many_arguments, reason = "the parts of a view are borrowed apart")]
     pub(crate) fn insert(
         &mut self,
         skeleton: &Skeleton,
         top: Link,
         polygon: &[PolygonArc],
+        seen: &SeenBox,
         filler: &Filler,
         mut judge: impl FnMut(&mut Directions, &mut Knife, PieceId, &[PolygonArc]) -> Verdict,
         work: &mut Workspace,
@@ -269,8 +294,9 @@ impl ContourTree {
         work.stack.clear();
         work.stack.push((top, 0, polygon.len()));
         while let Some((link, start, len)) = work.stack.pop() {
-            let node = match link {
-                Link::Leaf(leaf) => {
+            let node = match self.descend(link, seen, filler.near, &mut work.visited) {
+                None => continue,
+                Some(Link::Leaf(leaf)) => {
                     let Leaf { state, far, .. } = self.leaves[leaf as usize];
                     let verdict = match state {
                         LeafState::Filled(piece) if far > filler.near => {
@@ -287,13 +313,9 @@ impl ContourTree {
                     self.fill(skeleton, leaf, range, filler, work);
                     continue;
                 }
-                Link::Node(node) => &self.nodes[node as usize],
+                Some(Link::Node(node)) => node,
             };
-            if node.far <= filler.near {
-                continue;
-            }
-            work.visited += 1;
-            let (circle, negative, positive) = (node.circle, node.negative, node.positive);
+            let TreeNode { circle, negative, positive, .. } = self.nodes[node as usize];
             let part = &work.arcs[start..start + len];
             if let Some(side) = part.iter().find(|arc| arc.along.circle() == circle) {
                 let child = if side.along.inside().is_positive() { positive } else { negative };
@@ -326,6 +348,24 @@ impl ContourTree {
                 }
             }
         }
+    }
+
+    /// Goes down from a link as long as the box is certainly on one side: to a leaf, or to a node whose great circle may meet the box;
+    /// `None` if nothing from `near` on can be seen there.
+    #[inline]
+    fn descend(&self, mut link: Link, seen: &SeenBox, near: f64, visited: &mut u64) -> Option<Link> {
+        while let Link::Node(number) = link {
+            let node = &self.nodes[number as usize];
+            if node.far <= near {
+                return None;
+            }
+            *visited += 1;
+            match seen.side(self.directions.normal(node.circle)) {
+                Some(side) => link = if side.is_positive() { node.positive } else { node.negative },
+                None => break,
+            }
+        }
+        Some(link)
     }
 
     /// The part of a polygon, classified last, within a half sphere.
@@ -399,14 +439,13 @@ impl ContourTree {
             );
             let node = self.nodes.len() as u32;
             self.replace(parent, here, Link::Node(node));
-            let (outside, kept) =
-                if inside.is_positive() { (&work.negative, &work.positive) } else { (&work.positive, &work.negative) };
+            let Workspace { negative: below, positive: above, region, .. } = &mut *work;
+            let (outside, kept) = if inside.is_positive() { (below, above) } else { (above, below) };
+            std::mem::swap(region, kept);
             let outside = self.push_leaf(outside, Some(node));
             if let Some(last) = self.leaves.last_mut() {
                 (last.state, last.far) = (state, far);
             }
-            work.region.clear();
-            work.region.extend_from_slice(kept);
             here = Link::Leaf(leaf);
             let (negative, positive) = if inside.is_positive() { (outside, here) } else { (here, outside) };
             self.nodes.push(TreeNode { circle, negative, positive, parent, far });

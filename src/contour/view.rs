@@ -2,17 +2,23 @@
 
 mod by_boxes;
 mod by_bsp;
+mod space;
+
+pub(super) use space::CellBuffers;
+pub use space::ViewSpace;
 
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use super::domain::Domain;
+use super::image::{ContourImage, Source};
 use super::polygon::{HalfSphere, PolygonArc};
 use super::subdivision::subdivide;
-use super::tree::{ContourTree, Workspace};
+use super::tree::ContourTree;
 use super::viewpoint::Viewpoint;
 use crate::bsp::{FragmentSide, LineDef, LineId, PointId, Skeleton};
 use crate::exact::{PredicateStats, Sign};
 use crate::scene::{PieceRef, Scene, Side};
 use glam::DVec3;
+use space::Buffers;
 
 /// How a view is made. None of it changes what is seen, only the cost and how cells are cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -109,29 +115,24 @@ fn default_depth(polygons: usize) -> u32 {
     }
 }
 
-const NONE: u32 = u32::MAX;
-
 /// A view that is being made.
 struct Sight<'a> {
     skeleton: &'a Skeleton,
     eye: DVec3,
     contour: ContourTree,
-    work: Workspace,
-    /// The great circle of a line of the scene, the direction of a point, once they are needed.
-    line_circles: Vec<u32>,
-    point_directions: Vec<u32>,
-    polygon: Vec<PolygonArc>,
+    buffers: Buffers,
     stats: ViewStats,
 }
 
 impl<'a> Sight<'a> {
-    /// The domain, cut as the options say, with nothing seen in it yet.
+    /// The domain, cut as the options say, with nothing seen in it yet. Takes the memory of `space`, which has it back in the end.
     fn new(
         scene: &Scene,
         skeleton: &'a Skeleton,
         viewpoint: &Viewpoint,
         domain: &Domain,
         options: &ViewOptions,
+        space: &mut ViewSpace,
     ) -> Result<Self, ViewError> {
         let eye = viewpoint.eye();
         if !eye.is_finite() {
@@ -141,32 +142,23 @@ impl<'a> Sight<'a> {
         if depth > 8 {
             return Err(ViewError::TooDeep { depth });
         }
-        let mut work = Workspace::default();
-        let mut contour = ContourTree::octants(skeleton, Directions::new(skeleton, eye), &mut work.knife);
+        let (former, mut buffers) = space.take(skeleton);
+        let work = &mut buffers.work;
+        let mut contour = ContourTree::octants(skeleton, eye, former, &mut work.knife);
         let cache = &mut work.knife.cache;
         if let Some(horizon) = horizon(scene, skeleton, viewpoint, domain, &mut contour.directions, cache)? {
-            contour.clip(skeleton, horizon, &mut work);
+            contour.clip(skeleton, horizon, work);
         }
-        subdivide(&mut contour, skeleton, depth, &mut work);
-        Ok(Self {
-            skeleton,
-            eye,
-            contour,
-            work,
-            line_circles: vec![NONE; skeleton.line_count()],
-            point_directions: vec![NONE; skeleton.point_count()],
-            polygon: Vec::new(),
-            stats: ViewStats::default(),
-        })
+        subdivide(&mut contour, skeleton, depth, work);
+        Ok(Self { skeleton, eye, contour, buffers, stats: ViewStats::default() })
     }
 
-    fn finish(self) -> (ContourTree, ViewStats) {
-        let stats = ViewStats {
-            visited_nodes: self.work.visited,
-            predicates: self.work.knife.cache.predicates(),
-            ..self.stats
-        };
-        (self.contour, stats)
+    /// The image; what it does not need goes back to `space`.
+    fn finish(self, source: Source, viewpoint: &Viewpoint, domain: &Domain, space: &mut ViewSpace) -> ContourImage {
+        let work = &self.buffers.work;
+        let stats = ViewStats { visited_nodes: work.visited, predicates: work.knife.cache.predicates(), ..self.stats };
+        let cells = space.give_back(self.buffers);
+        ContourImage::new(source, *viewpoint, *domain, self.contour, stats, cells)
     }
 
     /// Makes `polygon` the cone of a boundary on the plane of a piece, of which the eye is shown that side.
@@ -174,7 +166,7 @@ impl<'a> Sight<'a> {
         // On which side of the plane, as the plane is defined, the eye is.
         let height = if shown == piece.facing() { Sign::Positive } else { Sign::Negative };
         let own = piece.plane_id();
-        self.polygon.clear();
+        self.buffers.polygon.clear();
         for k in 0..sides.len() {
             // Counter-clockwise around the front is clockwise on the sphere, seen from outside of it,
             // when the front is what is shown.
@@ -205,23 +197,19 @@ impl<'a> Sight<'a> {
             };
             let from = self.direction(from);
             let along = HalfSphere::new(self.circle(line), inside);
-            self.polygon.push(PolygonArc { from, along });
+            self.buffers.polygon.push(PolygonArc { from, along });
         }
     }
 
     fn circle(&mut self, line: LineId) -> CircleId {
-        let known = &mut self.line_circles[line.0 as usize];
-        if *known == NONE {
-            *known = self.contour.directions.push_line(self.skeleton, line, &mut self.work.knife.cache).0;
-        }
-        CircleId(*known)
+        let Self { skeleton, contour, buffers, .. } = self;
+        let make = || contour.directions.push_line(skeleton, line, &mut buffers.work.knife.cache).0;
+        CircleId(buffers.circles.of(line.0, make))
     }
 
     fn direction(&mut self, point: PointId) -> DirectionId {
-        let known = &mut self.point_directions[point.0 as usize];
-        if *known == NONE {
-            *known = self.contour.directions.push_point(self.skeleton, point, &mut self.work.knife.cache).0;
-        }
-        DirectionId(*known)
+        let Self { skeleton, contour, buffers, .. } = self;
+        let make = || contour.directions.push_point(skeleton, point, &mut buffers.work.knife.cache).0;
+        DirectionId(buffers.directions.of(point.0, make))
     }
 }

@@ -16,8 +16,37 @@
 use super::unit::{UnitDirection, arcs};
 use glam::DVec3;
 
+/// A unit vector, as precise as it may be.
+pub(super) trait Vertex {
+    /// To `f64`.
+    fn rounded(&self) -> DVec3;
+    /// The difference, as precise as the vectors are.
+    fn minus(&self, other: &Self) -> DVec3;
+}
+
+impl Vertex for UnitDirection {
+    fn rounded(&self) -> DVec3 {
+        self.rounded()
+    }
+
+    fn minus(&self, other: &Self) -> DVec3 {
+        self.minus(other)
+    }
+}
+
+/// Corners that are known to `f64` only.
+impl Vertex for DVec3 {
+    fn rounded(&self) -> DVec3 {
+        *self
+    }
+
+    fn minus(&self, other: &Self) -> DVec3 {
+        *self - *other
+    }
+}
+
 /// Twice the integral of u over a polygon given by its outline.
-pub(super) fn double_flux(outline: &[UnitDirection]) -> DVec3 {
+pub(super) fn double_flux<V: Vertex>(outline: &[V]) -> DVec3 {
     let Some(origin) = outline.first() else {
         return DVec3::ZERO;
     };
@@ -27,21 +56,25 @@ pub(super) fn double_flux(outline: &[UnitDirection]) -> DVec3 {
         let step = b.minus(a);
         flat += a.minus(origin).cross(step);
         let cross = a.rounded().cross(step);
-        curved += excess(cross.length(), a.rounded().dot(b.rounded())) * cross;
+        curved += excess(cross.length_squared(), a.rounded().dot(b.rounded())) * cross;
     }
     flat + curved
 }
 
-/// theta / sin theta - 1 for sin theta = `s`, cos theta = `d` >= 0 (and 0 for antipodes, whose arc is undefined).
+/// theta / sin theta - 1 for sin^2 theta = `x`, cos theta = `d` >= 0 (and 0 for antipodes, whose arc is undefined).
 ///
-/// Below s = 1/4 the series of asin(s) / s - 1, whose relative error is a few 1e-16; above it the
+/// Below sin theta = 1/4 the series of asin(s) / s - 1, whose relative error is a few 1e-16; above it the
 /// quotient, whose absolute error is 2e-16, not more than 4e-15 of this value but 2e-16 of the
-/// flux of a polygon of that size.
-fn excess(s: f64, d: f64) -> f64 {
-    if s < 0.25 && d > 0.0 {
-        let x = s * s;
-        return x * SERIES.iter().rev().fold(0.0, |sum, &c| sum * x + c);
+/// flux of a polygon of that size. What six terms leave out for short arcs is below 1e-19 of the first.
+fn excess(x: f64, d: f64) -> f64 {
+    let series = |terms: &[f64]| x * terms.iter().rev().fold(0.0, |sum, &c| sum * x + c);
+    if d > 0.0 && x < 1.0 / 1024.0 {
+        return series(&SERIES[..6]);
     }
+    if d > 0.0 && x < 1.0 / 16.0 {
+        return series(&SERIES);
+    }
+    let s = x.sqrt();
     if s > 0.0 { s.atan2(d) / s - 1.0 } else { 0.0 }
 }
 
@@ -67,8 +100,15 @@ mod tests {
     fn series_and_quotient_meet() {
         for s in [0.2, 0.23, 0.249_999, 0.25_f64.next_down()] {
             let quotient = s.asin() / s - 1.0;
-            let series = excess(s, (1.0 - s * s).sqrt());
+            let series = excess(s * s, (1.0 - s * s).sqrt());
             assert!((series - quotient).abs() <= 3e-16, "{s}: {series:e} {quotient:e}");
         }
+    }
+
+    #[test]
+    fn short_and_long_series_meet() {
+        let x = 1.0 / 1024.0;
+        let [short, long] = [f64::next_down(x), x].map(|x| excess(x, 1.0) / x);
+        assert!((short - long).abs() <= 1e-16 * long, "{short:e} {long:e}");
     }
 }

@@ -1,6 +1,7 @@
 //! Solid angles and form factors of what a contour image shows.
 
-use super::{form_factor, solid_angle};
+use super::form_factor::form_factor_of_rounded;
+use super::{UnitDirection, solid_angle};
 use crate::contour::{Cell, ContourImage, VisibleRegion};
 use crate::scene::{ObjectId, PolygonId, Scene, Side};
 use glam::DVec3;
@@ -66,34 +67,33 @@ impl ContourImage {
     /// background. `None` if the domain has no normal.
     pub fn form_factors(&self) -> Option<Sums> {
         let normal = self.normal()?;
-        Some(self.sums(|corners| form_factor(corners, normal)))
+        let normal = UnitDirection::new(normal)?;
+        Some(self.sums(|corners| form_factor_of_rounded(corners, normal)))
     }
 
     fn sums(&self, measure: impl Fn(&[DVec3]) -> f64) -> Sums {
+        // A place for every polygon: the cells of one are added in their order.
+        let mut places = vec![None; self.scene().polygon_count()];
+        let mut sums = Vec::new();
         let mut background = 0.0;
-        let mut values = Vec::with_capacity(self.cell_count());
         let mut corners = Vec::new();
         for cell in self.cells() {
             corners.clear();
             corners.extend(cell.boundary());
             let value = measure(&corners);
-            match (cell.polygon(), cell.side()) {
-                (Some(polygon), Some(side)) => values.push((polygon, side, value)),
-                _ => background += value,
-            }
+            let (Some(polygon), Some(side)) = (cell.polygon(), cell.side()) else {
+                background += value;
+                continue;
+            };
+            let place = *places[polygon.index()].get_or_insert_with(|| {
+                sums.push(PolygonSum { polygon, front: 0.0, back: 0.0 });
+                sums.len() as u32 - 1
+            });
+            let sum = &mut sums[place as usize];
+            *(if side == Side::Front { &mut sum.front } else { &mut sum.back }) += value;
         }
-        // Stable: the cells of a polygon are added in their order.
-        values.sort_by_key(|&(polygon, ..)| polygon);
-        let mut polygons: Vec<PolygonSum> = Vec::new();
-        for (polygon, side, value) in values {
-            if polygons.last().is_none_or(|last| last.polygon != polygon) {
-                polygons.push(PolygonSum { polygon, front: 0.0, back: 0.0 });
-            }
-            if let Some(last) = polygons.last_mut() {
-                *(if side == Side::Front { &mut last.front } else { &mut last.back }) += value;
-            }
-        }
-        Sums { polygons, background }
+        sums.sort_unstable_by_key(|sum| sum.polygon);
+        Sums { polygons: sums, background }
     }
 }
 
@@ -105,8 +105,8 @@ impl Cell<'_> {
 
     /// Its form factor; `None` if the domain has no normal. Never negative.
     pub fn form_factor(self) -> Option<f64> {
-        let normal = self.image().normal()?;
-        Some(form_factor(&self.boundary().collect::<Vec<_>>(), normal))
+        let normal = UnitDirection::new(self.image().normal()?)?;
+        Some(form_factor_of_rounded(&self.boundary().collect::<Vec<_>>(), normal))
     }
 }
 

@@ -7,7 +7,8 @@ use super::super::image::{ContourImage, Source};
 use super::super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
 use super::super::tree::{Filler, Link, Verdict};
 use super::super::viewpoint::Viewpoint;
-use super::{Sight, ViewError, ViewOptions};
+use super::space::Buffers;
+use super::{Sight, ViewError, ViewOptions, ViewSpace};
 use crate::bsp::Bounds;
 use crate::bvh::{Content, Hierarchy, SceneBvh};
 use crate::exact::{SeenBox, Sign, U};
@@ -36,13 +37,37 @@ impl SceneBvh {
         domain: &Domain,
         options: &ViewOptions,
     ) -> Result<ContourImage, ViewError> {
+        self.make_view(viewpoint, domain, options, &mut ViewSpace::new())
+    }
+
+    /// The same in memory that was used for views before, which saves asking for it: the image lasts until the next one.
+    ///
+    /// # Errors
+    /// As [`SceneBvh::view_with`].
+    pub fn view_in<'s>(
+        &self,
+        space: &'s mut ViewSpace,
+        viewpoint: &Viewpoint,
+        domain: &Domain,
+        options: &ViewOptions,
+    ) -> Result<&'s ContourImage, ViewError> {
+        let image = self.make_view(viewpoint, domain, options, space)?;
+        Ok(space.keep(image))
+    }
+
+    fn make_view(
+        &self,
+        viewpoint: &Viewpoint,
+        domain: &Domain,
+        options: &ViewOptions,
+        space: &mut ViewSpace,
+    ) -> Result<ContourImage, ViewError> {
         let hierarchy = &*self.hierarchy;
-        let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options)?;
+        let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options, space)?;
         let from_outside = hierarchy.solids_seen_from_outside(sight.eye);
         let mut walk = Walk { hierarchy, sight, from_outside, creases: FxHashMap::default() };
         walk.run(options.max_cells)?;
-        let (contour, stats) = walk.sight.finish();
-        Ok(ContourImage::new(Source::Bvh(self.clone()), *viewpoint, *domain, contour, stats))
+        Ok(walk.sight.finish(Source::Bvh(self.clone()), viewpoint, domain, space))
     }
 }
 
@@ -67,7 +92,7 @@ impl Walk<'_> {
             let node = &hierarchy.nodes[node as usize];
             let seen = SeenBox::new(eye, node.bounds.low, node.bounds.high);
             let top = self.sight.contour.around(top, &seen);
-            if self.sight.contour.hides(top, &seen, distance, &mut self.sight.work) {
+            if self.sight.contour.hides(top, &seen, distance, &mut self.sight.buffers.work) {
                 self.sight.stats.skipped_subtrees += 1;
                 continue;
             }
@@ -96,15 +121,17 @@ impl Walk<'_> {
         }
         sight.look_at(piece, hierarchy.sides(id), shown);
         sight.stats.inserted += 1;
-        let near = distance_to_box(eye, &hierarchy.bounds[id.index()]);
+        let bounds = &hierarchy.bounds[id.index()];
+        let seen = SeenBox::new(eye, bounds.low, bounds.high);
+        let near = distance_to_box(eye, bounds);
         let far = piece.points().fold(0.0, |far, p| f64::max(far, distance_bound(eye, p)));
         let filler = Filler { piece: id, near, far };
         let mut rivals = Rivals { hierarchy, eye, piece, shown, last: None, creases };
-        let Sight { contour, work, polygon, .. } = sight;
+        let Sight { contour, buffers: Buffers { work, polygon, .. }, .. } = sight;
         let judge = |directions: &mut Directions, knife: &mut Knife, old: PieceId, part: &[PolygonArc]| {
             rivals.judge(directions, knife, old, part)
         };
-        contour.insert(&hierarchy.skeleton, top, polygon, &filler, judge, work);
+        contour.insert(&hierarchy.skeleton, top, polygon, &seen, &filler, judge, work);
     }
 }
 

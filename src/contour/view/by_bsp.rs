@@ -4,8 +4,9 @@ use super::super::domain::Domain;
 use super::super::image::{ContourImage, Source};
 use super::super::tree::{Filler, Verdict};
 use super::super::viewpoint::Viewpoint;
-use super::{Sight, ViewError, ViewOptions};
-use crate::bsp::{FragmentId, SceneBsp, Step, Tree};
+use super::space::Buffers;
+use super::{Sight, ViewError, ViewOptions, ViewSpace};
+use crate::bsp::{FragmentId, SceneBsp, Step, Tree, bounds_of};
 use crate::exact::SeenBox;
 
 impl SceneBsp {
@@ -28,11 +29,35 @@ impl SceneBsp {
         domain: &Domain,
         options: &ViewOptions,
     ) -> Result<ContourImage, ViewError> {
+        self.make_view(viewpoint, domain, options, &mut ViewSpace::new())
+    }
+
+    /// The same in memory that was used for views before, which saves asking for it: the image lasts until the next one.
+    ///
+    /// # Errors
+    /// As [`SceneBsp::view_with`].
+    pub fn view_in<'s>(
+        &self,
+        space: &'s mut ViewSpace,
+        viewpoint: &Viewpoint,
+        domain: &Domain,
+        options: &ViewOptions,
+    ) -> Result<&'s ContourImage, ViewError> {
+        let image = self.make_view(viewpoint, domain, options, space)?;
+        Ok(space.keep(image))
+    }
+
+    fn make_view(
+        &self,
+        viewpoint: &Viewpoint,
+        domain: &Domain,
+        options: &ViewOptions,
+        space: &mut ViewSpace,
+    ) -> Result<ContourImage, ViewError> {
         let tree = &*self.tree;
-        let mut sight = Sight::new(&tree.scene, &tree.skeleton, viewpoint, domain, options)?;
+        let mut sight = Sight::new(&tree.scene, &tree.skeleton, viewpoint, domain, options, space)?;
         walk(&mut sight, tree, options.max_cells)?;
-        let (contour, stats) = sight.finish();
-        Ok(ContourImage::new(Source::Bsp(self.clone()), *viewpoint, *domain, contour, stats))
+        Ok(sight.finish(Source::Bsp(self.clone()), viewpoint, domain, space))
     }
 }
 
@@ -51,7 +76,7 @@ fn walk(sight: &mut Sight<'_>, tree: &Tree, max_cells: usize) -> Result<(), View
             Step::Subtree(node) => {
                 let bounds = &tree.nodes[node as usize].bounds;
                 let seen = SeenBox::new(sight.eye, bounds.low, bounds.high);
-                if sight.contour.hides(sight.contour.root, &seen, 0.0, &mut sight.work) {
+                if sight.contour.hides(sight.contour.root, &seen, 0.0, &mut sight.buffers.work) {
                     sight.stats.skipped_subtrees += 1;
                 } else {
                     stack.extend(tree.steps(node, sight.eye).into_iter().rev().flatten());
@@ -73,9 +98,12 @@ fn insert(sight: &mut Sight<'_>, tree: &Tree, id: FragmentId) {
     let fragment = tree.fragments[id.index()];
     let piece = tree.scene.piece(fragment.piece);
     let Some(shown) = tree.skeleton.shown_side(piece, sight.eye) else { return };
-    sight.look_at(piece, &tree.sides[fragment.range()], shown);
+    let sides = &tree.sides[fragment.range()];
+    sight.look_at(piece, sides, shown);
     sight.stats.inserted += 1;
+    let bounds = bounds_of(&tree.skeleton, sides);
+    let seen = SeenBox::new(sight.eye, bounds.low, bounds.high);
     let filler = Filler { piece: fragment.piece, near: 0.0, far: 0.0 };
-    let Sight { contour, work, polygon, .. } = sight;
-    contour.insert(&tree.skeleton, contour.root, polygon, &filler, |_, _, _, _| Verdict::Behind, work);
+    let Sight { contour, buffers: Buffers { work, polygon, .. }, .. } = sight;
+    contour.insert(&tree.skeleton, contour.root, polygon, &seen, &filler, |_, _, _, _| Verdict::Behind, work);
 }
