@@ -280,13 +280,15 @@ proptest! {
         let p = a + u * (b - a) + v * (c - a);
         let whole = solid_angle(&[a, b, c]);
         let parts = solid_angle(&[a, b, p]) + solid_angle(&[b, c, p]) + solid_angle(&[c, a, p]);
-        prop_assert!((parts - whole).abs() < 1e-14 * size * size.max(1e-2) + 1e-15 * size, "{parts:e} {whole:e}");
+        // Seen from close by, the polygon is larger than its size: the stated error has a share of the value.
+        let allowed = 1e-14 * size * size.max(1e-2) + 1e-15 * (size + whole);
+        prop_assert!((parts - whole).abs() < allowed, "{parts:e} {whole:e}");
         let axis = (a + b + c).normalize();
         // Form factors are of polygons above the horizon.
         prop_assume!([a, b, c].into_iter().all(|v| v.dot(axis) >= 0.0));
         let whole = form_factor(&[a, b, c], axis);
         let parts = form_factor(&[a, b, p], axis) + form_factor(&[b, c, p], axis) + form_factor(&[c, a, p], axis);
-        prop_assert!((parts - whole).abs() < 1e-15 * size, "{parts:e} {whole:e}");
+        prop_assert!((parts - whole).abs() < 1e-15 * (size + whole), "{parts:e} {whole:e}");
     }
 
     #[test]

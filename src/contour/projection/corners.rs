@@ -74,7 +74,7 @@ mod tests {
         for square in [1e-3, 0.1, 10.0] {
             for x in [-0.03, 0.0, 0.05] {
                 // Where the curve is at x, in shares of what it is above the chord.
-                let above = (0.5 * (1.0 - x * x)).sqrt() - p.y;
+                let above = f64::sqrt(0.5 * (1.0 - x * x)) - p.y;
                 for (share, expected) in [(-0.5, false), (0.5, true), (0.99, true), (1.01, false), (1.5, false)] {
                     let place = DVec2::new(x, p.y + above * share);
                     let direction = place.extend((1.0 - place.length_squared()).sqrt());
