@@ -309,6 +309,40 @@ fn what_a_wall_hides_is_left_out() {
     assert!(image.stats().skipped_subtrees > 0 && image.stats().inserted < 65, "{:?}", image.stats());
 }
 
+#[test]
+fn memory_of_other_views_changes_nothing() {
+    use super::{ViewOptions, ViewSpace};
+    use crate::bvh::SceneBvh;
+    use crate::samples::{Kind, generate};
+    let bits = |image: &ContourImage| {
+        let cells = image.cells().map(|cell| {
+            let corners = cell.boundary().flat_map(|d| d.to_array().map(f64::to_bits));
+            (cell.polygon(), cell.side(), corners.collect::<Vec<_>>())
+        });
+        (cells.collect::<Vec<_>>(), *image.stats(), image.form_factors())
+    };
+    let options = ViewOptions::default();
+    let mut space = ViewSpace::new();
+    // Larger and smaller scenes in turn, by both ways, with views that fail between them.
+    for (kind, polygons) in [(Kind::City, 300), (Kind::Room, 800), (Kind::Office, 200), (Kind::Room, 100)] {
+        let mesh = generate(kind, polygons, 1).expect("a scene");
+        let scene = mesh.to_builder().build().expect("a valid scene");
+        let bsp = SceneBsp::build(&scene, &BspOptions::default()).expect("a tree");
+        let boxes = SceneBvh::build(&scene);
+        for point in mesh.free_points(3, 5) {
+            let eye = Viewpoint::free(DVec3::from(point));
+            for domain in [Domain::Sphere, Domain::Hemisphere(DVec3::new(1.0, 2.0, 3.0))] {
+                let by_bsp = bits(bsp.view_in(&mut space, &eye, &domain, &options).expect("a view"));
+                assert_eq!(by_bsp, bits(&bsp.view(&eye, &domain).expect("a view")));
+                assert!(boxes.view_in(&mut space, &eye, &Domain::Above, &options).is_err());
+                let by_boxes = bits(boxes.view_in(&mut space, &eye, &domain, &options).expect("a view"));
+                assert_eq!(by_boxes, bits(&boxes.view(&eye, &domain).expect("a view")));
+                assert!(!by_boxes.0.is_empty());
+            }
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
