@@ -100,7 +100,7 @@ mod tests {
         let beside = [[0.0, 0.0], [2.0, 4.0]].map(DVec2::from).to_vec();
         let on = [[0.0, 0.0], [-1.0, -2.0]].map(DVec2::from).to_vec();
         let found = crossing(&[spike, beside, on], 0.7);
-        assert_eq!(found, [[0, 0], [0, 1], [1, 0]], "along each other from a common point");
+        assert_eq!(found, [[0, 0], [0, 1], [0, 2], [1, 0]], "along each other from a common point, and on a stretch");
         let eight = [[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]].map(DVec2::from).to_vec();
         assert_eq!(crossing(&[eight], 0.3), [[0, 0], [0, 2]], "itself");
     }
