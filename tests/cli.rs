@@ -165,6 +165,34 @@ fn the_same_command_writes_the_same_file() {
 }
 
 #[test]
+fn both_ways_show_the_same() {
+    let folder = Folder::new("ways");
+    folder.run("scene office --polygons 500 --seed 2 -o office.obj", 0);
+    let line = "contour office.obj --eye 3,1.5,1 --normal 1,2,1 --certify -o";
+    let ways = ["", "--way boxes", "--way bsp", "--epsilon 1e-9"].map(|way| {
+        folder.run(&format!("{line} x.json {way}"), 0);
+        let image = folder.json("x.json");
+        check_contour(&image, true);
+        image
+    });
+    let cells = ways.each_ref().map(|image| image["cells"].as_array().expect("cells").len());
+    assert!(cells[0] == cells[1] && cells[1] != cells[2], "by default boxes: {cells:?}");
+    for rows in ["polygons", "objects"] {
+        let [boxes, rest @ ..] = ways.each_ref().map(|image| image[rows].as_array().expect("rows"));
+        for other in rest {
+            assert_eq!(boxes.len(), other.len());
+            for (a, b) in boxes.iter().zip(other) {
+                assert_eq!((&a["polygon"], &a["object"]), (&b["polygon"], &b["object"]));
+                for key in ["solid_angle", "form_factor"] {
+                    let [a, b] = [a, b].map(|row| row[key].as_f64().expect("a number"));
+                    assert!(close(a, b), "{rows} {key}: {a} {b}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn a_point_on_a_polygon_is_found_to_be_on_it() {
     let folder = Folder::new("on");
     let on = |line: &str| {
@@ -198,6 +226,8 @@ fn wrong_command_lines_say_what_is_wrong_in_one_line_and_do_nothing() {
     let before = folder.files();
     for (line, named) in [
         ("", "subcommand"),
+        ("contour box.obj --eye 0,0,0 --sphere --way boxes --epsilon 0.1", "--epsilon is for the 3D BSP"),
+        ("contour box.obj --eye 0,0,0 --sphere --way cut", "boxes, bsp"),
         ("contuor box.obj", "contuor"),
         ("contour box.obj --normal 0,0,1", "--eye"),
         ("contour box.obj --eye 0,0,0", "--normal"),

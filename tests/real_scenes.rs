@@ -5,7 +5,8 @@ mod common;
 use common::Random;
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
-use nusselt::contour::{Domain, Location, Viewpoint};
+use nusselt::bvh::SceneBvh;
+use nusselt::contour::{Domain, Location, SceneOrder, Viewpoint};
 use nusselt::io::{ReadOptions, read_scene};
 use nusselt::scene::{Material, PolygonId, Scene, Shape, Side};
 use nusselt::verify::{RayAnswer, RayOracle};
@@ -135,14 +136,17 @@ fn viewpoints(scene: &Scene, random: &mut Random) -> Vec<(Viewpoint, Domain)> {
 /// boundary.
 fn prove_views(path: &Path, count: usize, random: &mut Random) -> [usize; 2] {
     let scene = read_scene(path, &ReadOptions::default()).expect("a scene that can be used").scene;
-    let bsp = SceneBsp::build(&scene, &BspOptions::default()).expect("epsilon is 0");
+    let ways: [SceneOrder; 2] =
+        [SceneBvh::build(&scene).into(), SceneBsp::build(&scene, &BspOptions::default()).expect("epsilon is 0").into()];
     let oracle = RayOracle::new(&scene);
     let (low, high) = scene.bounds().expect("a scene with vertices");
     let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
     let [mut compared, mut excused] = [0; 2];
-    for (viewpoint, domain) in viewpoints(&scene, random).into_iter().take(count) {
+    // Kinds of viewpoints come in turn with a period of four, so that each is seen both ways.
+    for (k, (viewpoint, domain)) in viewpoints(&scene, random).into_iter().take(count).enumerate() {
         let eye = viewpoint.eye();
-        let image = bsp.view(&viewpoint, &domain).expect("a finite eye");
+        let way = &ways[(k + k / 4) % 2];
+        let image = way.view(&viewpoint, &domain).expect("a finite eye");
         if let Err(defect) = image.certify() {
             panic!("{} from {eye}: {}", path.display(), defect.to_rust(&image.evidence(), &scene));
         }

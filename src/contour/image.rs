@@ -1,12 +1,12 @@
 //! The contour image and its cells.
 
 use super::domain::Domain;
+use super::order::SceneOrder;
 use super::polygon::PolygonArc;
 use super::tree::{ContourTree, LeafState, Link};
 use super::view::{CellBuffers, ViewStats};
 use super::viewpoint::Viewpoint;
-use crate::bsp::{SceneBsp, Skeleton, UncutSliver};
-use crate::bvh::SceneBvh;
+use crate::bsp::{Skeleton, UncutSliver};
 use crate::exact::Sign;
 use crate::scene::{PieceId, PolygonId, Scene, Side, Splitter};
 use glam::DVec3;
@@ -22,18 +22,11 @@ impl CellId {
     }
 }
 
-/// What a view was made of, each of which gives the same view.
-#[derive(Clone, Debug)]
-pub(super) enum Source {
-    Bsp(SceneBsp),
-    Bvh(SceneBvh),
-}
-
 /// The exact subdivision of a domain of directions into convex cells, each with the polygon seen in
 /// all of it, or with nothing.
 #[derive(Clone, Debug)]
 pub struct ContourImage {
-    source: Source,
+    order: SceneOrder,
     viewpoint: Viewpoint,
     domain: Domain,
     pub(super) tree: ContourTree,
@@ -45,7 +38,7 @@ pub struct ContourImage {
 
 impl ContourImage {
     pub(super) fn new(
-        source: Source,
+        order: SceneOrder,
         viewpoint: Viewpoint,
         domain: Domain,
         tree: ContourTree,
@@ -62,7 +55,7 @@ impl ContourImage {
                 leaves.push(k as u32);
             }
         }
-        Self { source, viewpoint, domain, tree, leaves, cell_of_leaf, stats }
+        Self { order, viewpoint, domain, tree, leaves, cell_of_leaf, stats }
     }
 
     /// What another image can use again.
@@ -72,33 +65,21 @@ impl ContourImage {
 
     /// The scene that is seen.
     pub fn scene(&self) -> &Scene {
-        match &self.source {
-            Source::Bsp(bsp) => bsp.scene(),
-            Source::Bvh(bvh) => bvh.scene(),
-        }
+        self.order.scene()
     }
 
     pub(crate) fn skeleton(&self) -> &Skeleton {
-        match &self.source {
-            Source::Bsp(bsp) => &bsp.tree.skeleton,
-            Source::Bvh(bvh) => &bvh.hierarchy.skeleton,
-        }
+        self.order.skeleton()
     }
 
     /// What a 3D BSP left uncut because of its epsilon; empty if that is 0, and without a BSP.
     pub fn uncut_slivers(&self) -> &[UncutSliver] {
-        match &self.source {
-            Source::Bsp(bsp) => bsp.uncut_slivers(),
-            Source::Bvh(_) => &[],
-        }
+        self.order.uncut_slivers()
     }
 
     /// The epsilon of the 3D BSP, in scene units; 0 without one.
     pub fn epsilon(&self) -> f64 {
-        match &self.source {
-            Source::Bsp(bsp) => bsp.epsilon(),
-            Source::Bvh(_) => 0.0,
-        }
+        self.order.epsilon()
     }
 
     /// Where it was seen from.

@@ -1,8 +1,8 @@
 //! The contour image: which polygon is seen in which direction, exactly.
 //!
-//! A 2D BSP on the sphere of directions (the *contour tree*) takes the fragments of the scene front
-//! to back. Its splitters are planes through the viewpoint, that is great circles. Its leaves are
-//! convex: not seen into yet, outside of the domain, or filled with one polygon for good. What is
+//! A 2D BSP on the sphere of directions (the *contour tree*) takes the polygons of the scene, whole and roughly from near to far or
+//! as fragments exactly front to back ([`SceneOrder`]). Its splitters are planes through the viewpoint, that is great circles. Its leaves are
+//! convex: not seen into yet, outside of the domain, or filled with one polygon. What is
 //! left open in the end shows the background.
 
 mod certify;
@@ -13,6 +13,7 @@ mod geo;
 mod image;
 mod locate;
 mod neighbours;
+mod order;
 mod polygon;
 mod projection;
 mod regions;
@@ -31,6 +32,7 @@ pub use geo::GeoRegion;
 pub use image::{Cell, CellId, ContourImage, TreeArc};
 pub use locate::{Location, Region};
 pub use neighbours::Neighbour;
+pub use order::SceneOrder;
 pub use projection::{FlatRegion, Projection, ProjectionError, Projector, ViewFrame, Window};
 pub use regions::{RegionLoop, RegionSide, VisibleRegion};
 pub use view::{ViewError, ViewOptions, ViewSpace, ViewStats};

@@ -9,7 +9,8 @@ pub use space::ViewSpace;
 
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use super::domain::Domain;
-use super::image::{ContourImage, Source};
+use super::image::ContourImage;
+use super::order::SceneOrder;
 use super::polygon::{HalfSphere, PolygonArc};
 use super::subdivision::subdivide;
 use super::tree::ContourTree;
@@ -154,11 +155,11 @@ impl<'a> Sight<'a> {
     }
 
     /// The image; what it does not need goes back to `space`.
-    fn finish(self, source: Source, viewpoint: &Viewpoint, domain: &Domain, space: &mut ViewSpace) -> ContourImage {
+    fn finish(self, order: SceneOrder, viewpoint: &Viewpoint, domain: &Domain, space: &mut ViewSpace) -> ContourImage {
         let work = &self.buffers.work;
         let stats = ViewStats { visited_nodes: work.visited, predicates: work.knife.cache.predicates(), ..self.stats };
         let cells = space.give_back(self.buffers);
-        ContourImage::new(source, *viewpoint, *domain, self.contour, stats, cells)
+        ContourImage::new(order, *viewpoint, *domain, self.contour, stats, cells)
     }
 
     /// Makes `polygon` the cone of a boundary on the plane of a piece, of which the eye is shown that side.

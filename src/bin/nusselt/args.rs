@@ -80,9 +80,18 @@ fn parse_repair(text: &str) -> Result<Repair, String> {
 /// How the 3D BSP is built.
 #[derive(clap::Args)]
 pub(crate) struct Order {
-    /// Leave polygons uncut that poke less than this through a splitting plane, in scene units; 0 is exact
+    /// Leave polygons uncut that poke less than this through a splitting plane of the 3D BSP, in scene units; 0 is exact
     #[arg(long, value_name = "E", default_value = "0", value_parser = parse_epsilon, allow_hyphen_values = true)]
     pub(crate) epsilon: f64,
+}
+
+/// The two ways to a contour image.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum Way {
+    /// Whole polygons, by a hierarchy of boxes
+    Boxes,
+    /// Fragments, by a 3D BSP
+    Bsp,
 }
 
 fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {

@@ -1,10 +1,12 @@
-//! Scenes and their 3D BSPs, with the time they take.
+//! Scenes, and what gives the order of their polygons, with the time they take.
 
-use crate::args::{Common, Loading, Order};
+use crate::args::{Common, Loading, Order, Way};
 use crate::failure::Failure;
 use crate::output::keep;
 use crate::repairs::changes;
 use nusselt::bsp::{BspOptions, SceneBsp};
+use nusselt::bvh::SceneBvh;
+use nusselt::contour::SceneOrder;
 use nusselt::io::read_scene;
 use nusselt::scene::Scene;
 use std::path::Path;
@@ -37,4 +39,15 @@ pub(crate) fn build(path: &Path, scene: &Scene, order: &Order) -> Result<(SceneB
     let options = BspOptions { epsilon: order.epsilon, ..BspOptions::default() };
     let bsp = SceneBsp::build(scene, &options).map_err(|error| Failure::about(path, &error))?;
     Ok((bsp, start.elapsed().as_secs_f64()))
+}
+
+/// What gives the order of the polygons of the scene of a file, and how many seconds building it took.
+pub(crate) fn build_order(path: &Path, scene: &Scene, order: &Order, way: Way) -> Result<(SceneOrder, f64), Failure> {
+    match way {
+        Way::Bsp => build(path, scene, order).map(|(bsp, seconds)| (bsp.into(), seconds)),
+        Way::Boxes => {
+            let start = Instant::now();
+            Ok((SceneBvh::build(scene).into(), start.elapsed().as_secs_f64()))
+        }
+    }
 }

@@ -8,6 +8,7 @@ use std::fmt::{Display, Write};
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(crate) struct Timing {
     pub(crate) load_s: f64,
+    /// To build the 3D BSP, or the hierarchy of boxes if that is what views were made with.
     pub(crate) bsp_s: f64,
     pub(crate) views: usize,
     pub(crate) view_ms_mean: f64,

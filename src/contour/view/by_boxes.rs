@@ -3,7 +3,7 @@
 
 use super::super::directions::{CircleId, Directions};
 use super::super::domain::Domain;
-use super::super::image::{ContourImage, Source};
+use super::super::image::ContourImage;
 use super::super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
 use super::super::tree::{Filler, Link, Verdict};
 use super::super::viewpoint::Viewpoint;
@@ -67,7 +67,7 @@ impl SceneBvh {
         let from_outside = hierarchy.solids_seen_from_outside(sight.eye);
         let mut walk = Walk { hierarchy, sight, from_outside, creases: FxHashMap::default() };
         walk.run(options.max_cells)?;
-        Ok(walk.sight.finish(Source::Bvh(self.clone()), viewpoint, domain, space))
+        Ok(walk.sight.finish(self.clone().into(), viewpoint, domain, space))
     }
 }
 

@@ -1,7 +1,7 @@
 //! The report's way: fragments from the 3D BSP, exactly front to back. What is filled is final.
 
 use super::super::domain::Domain;
-use super::super::image::{ContourImage, Source};
+use super::super::image::ContourImage;
 use super::super::tree::{Filler, Verdict};
 use super::super::viewpoint::Viewpoint;
 use super::space::Buffers;
@@ -57,7 +57,7 @@ impl SceneBsp {
         let tree = &*self.tree;
         let mut sight = Sight::new(&tree.scene, &tree.skeleton, viewpoint, domain, options, space)?;
         walk(&mut sight, tree, options.max_cells)?;
-        Ok(sight.finish(Source::Bsp(self.clone()), viewpoint, domain, space))
+        Ok(sight.finish(self.clone().into(), viewpoint, domain, space))
     }
 }
 

@@ -3,9 +3,9 @@
 mod place;
 mod report;
 
-use crate::args::{Common, Loading, Order, parse_arithmetic, parse_direction, parse_point, parse_surface};
+use crate::args::{Common, Loading, Order, Way, parse_arithmetic, parse_direction, parse_point, parse_surface};
 use crate::failure::Failure;
-use crate::input::{build, load};
+use crate::input::{build_order, load};
 use crate::output::{is_same_file, print, print_json, write_file, write_obj, written};
 use crate::proof::{Proof, failed_image};
 use crate::summary::Timing;
@@ -65,6 +65,10 @@ pub(crate) struct Contour {
     /// Draw the contour tree and the quadtree over .svg
     #[arg(long)]
     show_tree: bool,
+    /// How to find what is nearer: whole polygons by a hierarchy of boxes, or the fragments of a 3D BSP; both give the
+    /// same image, cut into other cells [default: boxes, and bsp with an epsilon]
+    #[arg(long, value_name = "boxes|bsp", value_enum, hide_possible_values = true)]
+    way: Option<Way>,
     /// Levels of the quadtree at the top of the contour tree, 0 to 8 [default: by the size of the scene]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=8))]
     quadtree_depth: Option<u32>,
@@ -130,13 +134,13 @@ impl Contour {
         let outputs = self.output.iter().map(|output| &output.path).chain(&self.certificate).map(PathBuf::as_path);
         let (scene, load_s) = load(&self.scene, outputs, &self.loading, common)?;
         let (viewpoint, domain) = self.stand(&scene)?;
-        let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
+        let (order, order_s) = build_order(&self.scene, &scene, &self.order, self.way())?;
         let start = Instant::now();
         let options = ViewOptions { quadtree_depth: self.quadtree_depth, ..ViewOptions::default() };
         let image =
-            bsp.view_with(&viewpoint, &domain, &options).map_err(|error| Failure::about(&self.scene, &error))?;
+            order.view_with(&viewpoint, &domain, &options).map_err(|error| Failure::about(&self.scene, &error))?;
         let view_ms = start.elapsed().as_secs_f64() * 1e3;
-        let mut timing = Timing::new(load_s, bsp_s, &[view_ms]);
+        let mut timing = Timing::new(load_s, order_s, &[view_ms]);
         let mut summary = ContourSummary::new(&image);
         // Before anything is written.
         let proof = self.prove(&image)?;
@@ -187,7 +191,14 @@ impl Contour {
         if self.sphere && projection == Projection::Nusselt {
             return usage(format!("--projection: {}", nusselt::contour::ProjectionError::NotAHemisphere));
         }
+        if self.way == Some(Way::Boxes) && self.order.epsilon > 0.0 {
+            return usage("--epsilon is for the 3D BSP; leave it out, or take --way bsp".to_owned());
+        }
         Ok(projection)
+    }
+
+    fn way(&self) -> Way {
+        self.way.unwrap_or(if self.order.epsilon > 0.0 { Way::Bsp } else { Way::Boxes })
     }
 
     /// Proves the image if that is asked for, and keeps the evidence.

@@ -86,7 +86,7 @@ pub(super) fn in_words(image: &ContourImage, summary: &ContourSummary<'_>, timin
     lines.add("total", numbers(summary.total));
     lines.add(
         "time",
-        format!("load {:.3} s, BSP {:.3} s, view {:.3} ms", timing.load_s, timing.bsp_s, timing.view_ms_max),
+        format!("load {:.3} s, order {:.3} s, view {:.3} ms", timing.load_s, timing.bsp_s, timing.view_ms_max),
     );
     lines
 }
