@@ -35,5 +35,5 @@ pub use neighbours::Neighbour;
 pub use order::SceneOrder;
 pub use projection::{FlatRegion, Projection, ProjectionError, Projector, ViewFrame, Window};
 pub use regions::{RegionLoop, RegionSide, VisibleRegion};
-pub use view::{ViewError, ViewOptions, ViewSpace, ViewStats};
+pub use view::{ViewError, ViewOptions, ViewSpace, ViewStats, ViewsError};
 pub use viewpoint::{SurfaceError, Viewpoint};

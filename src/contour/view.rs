@@ -2,9 +2,11 @@
 
 mod by_boxes;
 mod by_bsp;
+mod many;
 mod space;
 
 pub(super) use space::CellBuffers;
+pub use many::ViewsError;
 pub use space::ViewSpace;
 
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};

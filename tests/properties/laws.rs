@@ -7,8 +7,9 @@
 use super::{cases, grid_directions, hold};
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, PlaneChoice, SceneBsp};
-use nusselt::contour::{ContourImage, ViewOptions};
+use nusselt::contour::{ContourImage, Domain, SceneOrder, ViewError, ViewOptions, Viewpoint, ViewsError};
 use nusselt::exact::orient3d;
+use nusselt::samples::{Kind, generate};
 use nusselt::scene::{PieceRef, PolygonId, Side};
 use nusselt::testing::{
     AxisMap, Case, Faces, Mode, Outlook, axis_map, case, case_of, check_same_bits, check_same_view, closed_scene,
@@ -228,6 +229,35 @@ proptest! {
         }
         // The tree itself does not depend on anything but the scene.
         hold(check_same_bits(&alone[0], &hold(views[0].image())?))?;
+    }
+}
+
+/// Also where a thread's memory was used for other views before, whichever those were.
+#[test]
+fn many_views_are_the_same_bits_for_any_number_of_threads() {
+    let room = generate(Kind::Room, 400, 5).unwrap();
+    let scene = room.to_builder().build().unwrap();
+    let domains = [Domain::Hemisphere(DVec3::Z), Domain::Sphere, Domain::Hemisphere(DVec3::new(1.0, -2.0, 0.5))];
+    let eyes = room.free_points(30, 2).into_iter().zip(domains.into_iter().cycle());
+    let views: Vec<_> = eyes.map(|(eye, domain)| (Viewpoint::free(eye.into()), domain)).collect();
+    let options = ViewOptions::default();
+    let ways: [SceneOrder; 2] =
+        [SceneOrder::new(&scene), SceneBsp::build(&scene, &BspOptions::default()).unwrap().into()];
+    for order in ways {
+        for threads in [1, 2, 3, 8] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let images = pool.install(|| order.views(&views, &options, |k, image| (k, image.clone()))).unwrap();
+            assert_eq!(images.len(), views.len());
+            for (place, (k, image)) in images.into_iter().enumerate() {
+                assert_eq!(k, place);
+                check_same_bits(&order.view(&views[k].0, &views[k].1).unwrap(), &image).unwrap();
+            }
+            let mut bad = views.clone();
+            bad[20].1 = Domain::Hemisphere(DVec3::ZERO);
+            bad[11].0 = Viewpoint::free(DVec3::NAN);
+            let error = pool.install(|| order.views(&bad, &options, |_, _| ())).unwrap_err();
+            assert_eq!(error, ViewsError { index: 11, source: ViewError::EyeNotFinite });
+        }
     }
 }
 

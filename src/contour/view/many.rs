@@ -1,0 +1,63 @@
+//! Many views, shared by threads.
+
+use super::super::domain::Domain;
+use super::super::image::ContourImage;
+use super::super::order::SceneOrder;
+use super::super::viewpoint::Viewpoint;
+use super::{ViewError, ViewOptions, ViewSpace};
+use crate::parallel;
+use std::sync::{Mutex, PoisonError};
+
+/// Which of many views there is none of, and why.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("view {index}: {source}")]
+pub struct ViewsError {
+    /// The place in the list, from 0; the first one that fails.
+    pub index: usize,
+    /// Why.
+    pub source: ViewError,
+}
+
+impl SceneOrder {
+    /// Takes a view from every viewpoint and gives, in their order, what `of_image` makes of each, which is passed the place in the
+    /// list too. With the feature `parallel` the threads of the current `rayon` pool share the work; what comes out does not depend on
+    /// how many there are.
+    ///
+    /// At any time there are as many images as threads, each in memory that the next view of that thread takes over
+    /// ([`ViewSpace`]).
+    ///
+    /// ```
+    /// use nusselt::contour::{Domain, SceneOrder, ViewOptions, Viewpoint};
+    /// use nusselt::samples::{Kind, generate};
+    ///
+    /// let room = generate(Kind::Room, 200, 1)?;
+    /// let order = SceneOrder::new(&room.to_builder().build()?);
+    /// let up = Domain::Hemisphere(glam::DVec3::Z);
+    /// let eyes: Vec<_> = room.free_points(10, 1).into_iter().map(|p| (Viewpoint::free(p.into()), up)).collect();
+    /// let sums = order.views(&eyes, &ViewOptions::default(), |_, image| image.form_factors().map(|f| f.total()))?;
+    /// assert!(sums.iter().flatten().all(|sum| (sum - 1.0).abs() < 1e-14) && sums.len() == 10);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// The first viewpoint in the list of which there is no view, as [`SceneOrder::view_with`] says.
+    pub fn views<T: Send>(
+        &self,
+        viewpoints: &[(Viewpoint, Domain)],
+        options: &ViewOptions,
+        of_image: impl Fn(usize, &ContourImage) -> T + Sync + Send,
+    ) -> Result<Vec<T>, ViewsError> {
+        let spaces: Mutex<Vec<ViewSpace>> = Mutex::new(Vec::new());
+        let view = |index: usize| {
+            let (viewpoint, domain) = &viewpoints[index];
+            // A space is only ever taken or put back whole.
+            let free = || spaces.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut space = free().pop().unwrap_or_default();
+            let image = self.view_in(&mut space, viewpoint, domain, options);
+            let result = image.map(|image| of_image(index, image));
+            free().push(space);
+            result.map_err(|source| ViewsError { index, source })
+        };
+        parallel::map((0..viewpoints.len()).collect(), view).into_iter().collect()
+    }
+}
