@@ -187,7 +187,7 @@ fn limits_end_with_an_error() {
     let eye = Viewpoint::free(DVec3::new(3.0, 2.0, 20.0));
     let error = bsp.view_with(&eye, &Domain::Sphere, &limited).unwrap_err();
     assert_eq!(error, ViewError::TooManyCells { limit: 100 });
-    let deep = |depth| ViewOptions { quadtree_depth: Some(depth), max_cells: usize::MAX };
+    let deep = |depth| ViewOptions { quadtree_depth: Some(depth), max_cells: usize::MAX, ..ViewOptions::default() };
     let error = bsp.view_with(&eye, &Domain::Sphere, &deep(9)).unwrap_err();
     assert_eq!(error, ViewError::TooDeep { depth: 9 });
     assert!(bsp.view_with(&eye, &Domain::Sphere, &deep(2)).is_ok());

@@ -35,5 +35,6 @@ pub use neighbours::Neighbour;
 pub use order::SceneOrder;
 pub use projection::{FlatRegion, Projection, ProjectionError, Projector, ViewFrame, Window};
 pub use regions::{RegionLoop, RegionSide, VisibleRegion};
+pub use subdivision::{Quadtree, Spacing};
 pub use view::{ViewError, ViewOptions, ViewSpace, ViewStats, ViewsError};
 pub use viewpoint::{SurfaceError, Viewpoint};

@@ -5,7 +5,7 @@
 //! angles then excludes gaps and overlaps larger than rounding.
 
 use super::directions::ExactCache;
-use super::{ContourImage, Domain, Viewpoint};
+use super::{ContourImage, Domain, Quadtree, Spacing, Viewpoint};
 use crate::bsp::{BspOptions, SceneBsp};
 use crate::exact::Sign;
 use crate::scene::{Material, PolygonId, Scene, Side};
@@ -215,6 +215,50 @@ fn every_level_of_the_quadtree_quarters_all_squares() {
             let solid_angle = cell.solid_angle();
             assert!(solid_angle > square * 0.09 && solid_angle < square, "level {depth}: {solid_angle}");
         }
+    }
+}
+
+#[test]
+fn a_quadtree_on_an_image_plane_has_even_squares_or_even_angles() {
+    let scene = Scene::builder().build().unwrap();
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    let viewpoint = Viewpoint::free(DVec3::ONE);
+    for normal in [DVec3::Z, DVec3::NEG_X, DVec3::new(1.0, -2.0, 3.0) * 1e-300] {
+        let domain = Domain::Hemisphere(normal);
+        let towards = (normal / normal.abs().max_element()).normalize();
+        for (degrees, spacing) in [(90.0, Spacing::Even), (170.0, Spacing::TowardsCentre), (1e-3, Spacing::Even)] {
+            let quadtree = Quadtree::Plane { degrees, spacing };
+            let options = super::ViewOptions { quadtree_depth: Some(3), quadtree, ..Default::default() };
+            let image = bsp.view_with(&viewpoint, &domain, &options).unwrap();
+            check(&image);
+            // The corners of cells in the plane: the coordinates of eight squares a side, at most one of which octants cut.
+            let (u, v) = towards.any_orthonormal_pair();
+            let steps = |d: DVec3, across: DVec3| {
+                let x = d.dot(across) / d.dot(towards);
+                let half = f64::to_radians(degrees / 2.0);
+                let x = if spacing == Spacing::Even { x / half.tan() } else { x.atan() / half };
+                x * 4.0
+            };
+            let inside = |x: f64| x.abs() < 4.0 + 1e-9;
+            let corners = image.cells().flat_map(|cell| cell.boundary().collect::<Vec<_>>());
+            let grid: BTreeSet<_> = corners
+                .filter(|d| d.dot(towards) > 1e-9)
+                .map(|d| [steps(d, u), steps(d, v)])
+                .filter(|x| x.iter().all(|&x| inside(x) && (x - x.round()).abs() < 1e-6))
+                .map(|x| x.map(|x| x.round() as i32))
+                .collect();
+            assert_eq!(grid.len(), 81, "{normal} {quadtree:?}");
+        }
+    }
+    for (degrees, domain) in [
+        (90.0, Domain::Sphere),
+        (0.0, Domain::Hemisphere(DVec3::Z)),
+        (180.0, Domain::Hemisphere(DVec3::Z)),
+        (f64::NAN, Domain::Hemisphere(DVec3::Z)),
+    ] {
+        let quadtree = Quadtree::Plane { degrees, spacing: Spacing::Even };
+        let options = super::ViewOptions { quadtree, ..Default::default() };
+        assert_eq!(bsp.view_with(&viewpoint, &domain, &options).unwrap_err(), super::ViewError::NoImagePlane);
     }
 }
 

@@ -5,8 +5,8 @@ mod by_bsp;
 mod many;
 mod space;
 
-pub(super) use space::CellBuffers;
 pub use many::ViewsError;
+pub(super) use space::CellBuffers;
 pub use space::ViewSpace;
 
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};
@@ -14,7 +14,7 @@ use super::domain::Domain;
 use super::image::ContourImage;
 use super::order::SceneOrder;
 use super::polygon::{HalfSphere, PolygonArc};
-use super::subdivision::subdivide;
+use super::subdivision::{Quadtree, subdivide};
 use super::tree::ContourTree;
 use super::viewpoint::Viewpoint;
 use crate::bsp::{FragmentSide, LineDef, LineId, PointId, Skeleton};
@@ -24,11 +24,13 @@ use glam::DVec3;
 use space::Buffers;
 
 /// How a view is made. None of it changes what is seen, only the cost and how cells are cut.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewOptions {
     /// Levels of the quadtree at the top of the contour tree: 0 for octants only, 1 for quarter faces
-    /// of a cube, each further one quarters those. `None` chooses by the size of the scene. At most 8.
+    /// of a cube or quarters of an image plane, each further one quarters those. `None` chooses by the size of the scene. At most 8.
     pub quadtree_depth: Option<u32>,
+    /// Where the quadtree lies.
+    pub quadtree: Quadtree,
     /// The view ends with an error when it has more cells than this: edges that all cross each other, as
     /// seen from the eye, make about the square of their number. The default, 2^25, takes about 5 GiB.
     pub max_cells: usize,
@@ -36,7 +38,7 @@ pub struct ViewOptions {
 
 impl Default for ViewOptions {
     fn default() -> Self {
-        Self { quadtree_depth: None, max_cells: 1 << 25 }
+        Self { quadtree_depth: None, quadtree: Quadtree::Cube, max_cells: 1 << 25 }
     }
 }
 
@@ -59,6 +61,9 @@ pub enum ViewError {
         /// The levels asked for.
         depth: u32,
     },
+    /// A quadtree on an image plane, without a hemisphere that has one, or with an angle across it that is not between 0 and 180 degrees.
+    #[error("a quadtree on an image plane takes a hemisphere, and an angle above 0 and below 180 degrees")]
+    NoImagePlane,
     /// The view falls into too many cells.
     #[error(
         "what is seen falls into more than {limit} cells; simplify the scene (ViewOptions::max_cells is the limit)"
@@ -145,14 +150,24 @@ impl<'a> Sight<'a> {
         if depth > 8 {
             return Err(ViewError::TooDeep { depth });
         }
+        if let Quadtree::Plane { degrees, .. } = options.quadtree
+            && !(degrees > 0.0 && degrees < 180.0 && *domain != Domain::Sphere)
+        {
+            return Err(ViewError::NoImagePlane);
+        }
         let (former, mut buffers) = space.take(skeleton);
         let work = &mut buffers.work;
         let mut contour = ContourTree::octants(skeleton, eye, former, &mut work.knife);
         let cache = &mut work.knife.cache;
-        if let Some(horizon) = horizon(scene, skeleton, viewpoint, domain, &mut contour.directions, cache)? {
+        let horizon = horizon(scene, skeleton, viewpoint, domain, &mut contour.directions, cache)?;
+        if let Some(horizon) = horizon {
             contour.clip(skeleton, horizon, work);
         }
-        subdivide(&mut contour, skeleton, depth, work);
+        let normal = horizon.map(|half| {
+            let normal = contour.directions.normal(half.circle()).v;
+            if half.inside().is_positive() { normal } else { -normal }
+        });
+        subdivide(&mut contour, skeleton, options.quadtree, normal, depth, work);
         Ok(Self { skeleton, eye, contour, buffers, stats: ViewStats::default() })
     }
 
