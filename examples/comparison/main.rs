@@ -4,16 +4,16 @@
 //! docs/comparison.md, and docs/images/comparison-*.svg. Another folder in their place, with a comparison.md in it, may be named.
 
 mod figures;
+#[path = "../shared/marks.rs"]
+mod marks;
 mod tables;
 
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::contour::{Domain, Viewpoint};
 use nusselt::hemicube::{ComparisonRow, Method, compare};
-use nusselt::io::atomic_write;
 use nusselt::samples::{Kind, generate};
 use std::error::Error;
-use std::io::Write;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -37,14 +37,12 @@ struct Room {
 fn main() -> Result<(), Box<dyn Error>> {
     let own = || Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     let docs = std::env::args_os().nth(1).map_or_else(own, PathBuf::from);
-    let page = docs.join("comparison.md");
     // Before anything is measured.
-    let (before, after) = tables::around_marks(&std::fs::read_to_string(&page)?)?;
+    let page = marks::Page::open(&docs.join("comparison.md"), "measured")?;
     let start = Instant::now();
     let rooms = POLYGONS.map(measure).into_iter().collect::<Result<Vec<_>, _>>()?;
     figures::draw(&rooms, &docs.join("images"))?;
-    let text = tables::text(&rooms);
-    atomic_write(&page, |file| write!(file, "{before}\n{text}\n{after}"))?;
+    page.write(&tables::text(&rooms))?;
     eprintln!("{:.0} s", start.elapsed().as_secs_f64());
     Ok(())
 }

@@ -6,16 +6,6 @@ use std::fmt::Write;
 
 /// Above this resolution the report's analytic method was faster than the hemicube.
 const REPORT: usize = 512;
-const BEGIN: &str = "<!-- measured: begin -->\n";
-const END: &str = "<!-- measured: end -->";
-
-/// What is before the text between the marks of a page, and what is after it, with the marks.
-pub(crate) fn around_marks(page: &str) -> Result<(String, String), &'static str> {
-    let parts = page.split_once(BEGIN).and_then(|(before, rest)| Some((before, rest.split_once(END)?.1)));
-    let (before, after) = parts.ok_or("comparison.md has lost its marks")?;
-    Ok((format!("{before}{BEGIN}"), format!("{END}{after}")))
-}
-
 /// Writing to a string does not fail.
 macro_rules! line {
     ($text:expr, $($rest:tt)*) => { let _ = writeln!($text, $($rest)*); };
