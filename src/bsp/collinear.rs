@@ -1,7 +1,7 @@
 //! Which edges of a scene lie on one straight line: seen from anywhere, they are one great circle.
 
 use crate::exact::{Arena, Frame, Sign};
-use crate::scene::VertexId;
+use crate::scene::{EdgeId, VertexId};
 use glam::DVec3;
 
 /// At vertices with more edges than this none are joined: a missed identity costs time, not exactness.
@@ -17,8 +17,36 @@ impl Collinear {
     /// Joins edges that meet in a vertex and go straight on there, exactly.
     pub(super) fn new(vertices: &[DVec3], edges: &[[VertexId; 2]], frame: &Frame) -> Self {
         let mut lines = Self { parents: (0..edges.len() as u32).map(|k| (k, true)).collect() };
+        lines.join_new(vertices, edges, frame, |_| true);
+        lines
+    }
+
+    /// The same for a scene with objects moved: what was one line before and has not moved still is. `before` tells of each edge
+    /// the number it had, if it has not moved.
+    pub(super) fn moved(
+        &self,
+        vertices: &[DVec3],
+        edges: &[[VertexId; 2]],
+        frame: &Frame,
+        before: &[Option<EdgeId>],
+    ) -> Self {
+        // The first edge of a line that is left stands for it.
+        let mut first: Vec<Option<(u32, bool)>> = vec![None; self.parents.len()];
+        let parents = before.iter().zip(0..).map(|(before, edge)| {
+            let Some(before) = before else { return (edge, true) };
+            let (line, way) = self.parents[before.index()];
+            let (root, root_way) = *first[line as usize].get_or_insert((edge, way));
+            (root, root_way == way)
+        });
+        let mut lines = Self { parents: parents.collect() };
+        lines.join_new(vertices, edges, frame, |edge| before[edge as usize].is_none());
+        lines
+    }
+
+    /// Joins edges, one of which at least is new, and has what stands for a line known at once.
+    fn join_new(&mut self, vertices: &[DVec3], edges: &[[VertexId; 2]], frame: &Frame, is_new: impl Fn(u32) -> bool) {
         let mut arena = Arena::default();
-        let around = edges_around(vertices.len(), edges);
+        let around = edges_around(vertices.len(), edges, &is_new);
         for (vertex, here) in around.iter().enumerate() {
             if here.len() > MOST_EDGES {
                 continue;
@@ -30,6 +58,9 @@ impl Collinear {
             };
             for (k, &first) in here.iter().enumerate() {
                 for &second in &here[..k] {
+                    if !is_new(first) && !is_new(second) {
+                        continue;
+                    }
                     let (p, q) = (away(first), away(second));
                     // Rules out all but nearly opposite edges, in any scale; then exactly.
                     let opposite = p.try_normalize().zip(q.try_normalize()).is_none_or(|(p, q)| p.dot(q) < -0.999);
@@ -43,15 +74,14 @@ impl Collinear {
                         )
                     {
                         let ways = [first, second].map(|edge| edges[edge as usize][0].index() == vertex);
-                        lines.join(first, second, ways[0] != ways[1]);
+                        self.join(first, second, ways[0] != ways[1]);
                     }
                 }
             }
         }
         for edge in 0..edges.len() as u32 {
-            lines.parents[edge as usize] = lines.root(edge);
+            self.parents[edge as usize] = self.root(edge);
         }
-        lines
     }
 
     /// For edges of which it is known which stands for which.
@@ -88,12 +118,16 @@ impl Collinear {
     }
 }
 
-/// For every vertex the numbers of its edges.
-fn edges_around(vertices: usize, edges: &[[VertexId; 2]]) -> Vec<Vec<u32>> {
+/// For every vertex at which there is a new edge the numbers of all its edges.
+fn edges_around(vertices: usize, edges: &[[VertexId; 2]], is_new: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
+    let mut has_new = vec![false; vertices];
+    for (_, edge) in (0..).zip(edges).filter(|&(k, _)| is_new(k)) {
+        edge.iter().for_each(|end| has_new[end.index()] = true);
+    }
     let mut around = vec![Vec::new(); vertices];
-    for (k, edge) in edges.iter().enumerate() {
-        for end in edge {
-            around[end.index()].push(k as u32);
+    for (k, edge) in (0..).zip(edges) {
+        for end in edge.iter().filter(|end| has_new[end.index()]) {
+            around[end.index()].push(k);
         }
     }
     around

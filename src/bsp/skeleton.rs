@@ -8,7 +8,7 @@ use super::collinear::Collinear;
 use crate::exact::{
     Approx3, ApproxPlane, ApproxPoint, Arena, BitRange, Constructor, Frame, Plane, Point, Sign, Splitter, U, orient3d,
 };
-use crate::scene::{Axis, PieceRef, PlaneId, Scene, Side, SupportingPlane, VertexId};
+use crate::scene::{Axis, Carried, PieceRef, PlaneId, Scene, Side, SupportingPlane, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -69,19 +69,40 @@ pub(crate) struct Skeleton {
 
 impl Skeleton {
     pub(crate) fn new(scene: &Scene) -> Self {
-        let bits = BitRange::of(scene.vertices().iter().copied());
-        let origin = scene.vertices().first().copied().unwrap_or_default();
-        let frame = Frame::new(bits, origin);
+        let (bits, frame) = grid(scene);
         let collinear = Collinear::new(scene.vertices(), scene.edges(), &frame);
+        let mut skeleton = Self::without_planes(scene, bits, frame, collinear);
+        for &plane in scene.planes() {
+            skeleton.push_plane(plane);
+        }
+        skeleton
+    }
+
+    /// The skeleton of this one's scene with objects moved: what has not moved is taken over. Planes and lines that are not the
+    /// scene's are left out.
+    pub(crate) fn moved(&self, scene: &Scene, carried: &Carried) -> Self {
+        let (bits, frame) = grid(scene);
+        let collinear = self.collinear.moved(scene.vertices(), scene.edges(), &frame, &carried.edges);
+        let mut skeleton = Self::without_planes(scene, bits, frame, collinear);
+        for (&plane, before) in scene.planes().iter().zip(&carried.planes) {
+            match before {
+                Some(before) => skeleton.add_plane(plane, self.approx_planes[before.index()]),
+                None => skeleton.push_plane(plane),
+            };
+        }
+        skeleton
+    }
+
+    fn without_planes(scene: &Scene, bits: BitRange, frame: Frame, collinear: Collinear) -> Self {
         let (vertex_lines, vertex_lines_start) = lines_through_vertices(scene, &collinear);
-        let mut skeleton = Self {
+        Self {
             bits,
             collinear,
             vertex_lines,
             vertex_lines_start,
             vertices: scene.vertices().to_vec(),
-            planes: Vec::new(),
-            approx_planes: Vec::new(),
+            planes: Vec::with_capacity(scene.planes().len()),
+            approx_planes: Vec::with_capacity(scene.planes().len()),
             axis_planes: FxHashMap::default(),
             vertex_planes: FxHashMap::default(),
             edges: scene.edges().to_vec(),
@@ -92,11 +113,7 @@ impl Skeleton {
             approx_points: scene.vertices().iter().map(|&position| ApproxPoint::exact(position)).collect(),
             incident: Vec::new(),
             frame,
-        };
-        for &plane in scene.planes() {
-            skeleton.push_plane(plane);
         }
-        skeleton
     }
 
     /// A skeleton without planes for a part of the scene: `vertices` and `edges` by numbers of their own, with the edges that stand
@@ -477,21 +494,43 @@ fn compare(x: f64, y: f64) -> Sign {
     }
 }
 
+/// The grid on which the vertices of a scene lie.
+fn grid(scene: &Scene) -> (BitRange, Frame) {
+    let bits = BitRange::of(scene.vertices().iter().copied());
+    let origin = scene.vertices().first().copied().unwrap_or_default();
+    (bits, Frame::new(bits, origin))
+}
+
 /// For every vertex the lines of its edges, each once; with the place where each vertex's lines begin.
 fn lines_through_vertices(scene: &Scene, collinear: &Collinear) -> (Vec<LineId>, Vec<u32>) {
-    let mut pairs: Vec<(VertexId, LineId)> = Vec::with_capacity(2 * scene.edges().len());
-    for (k, edge) in scene.edges().iter().enumerate() {
-        let line = LineId(collinear.representative(k as u32).0);
-        pairs.extend(edge.map(|vertex| (vertex, line)));
-    }
-    pairs.sort_unstable();
-    pairs.dedup();
     let mut starts = vec![0; scene.vertices().len() + 1];
-    for (vertex, _) in &pairs {
-        starts[vertex.index() + 1] += 1;
+    for end in scene.edges().iter().flatten() {
+        starts[end.index() + 1] += 1;
     }
     for k in 1..starts.len() {
         starts[k] += starts[k - 1];
     }
-    (pairs.into_iter().map(|(_, line)| line).collect(), starts)
+    let mut all = vec![LineId(0); 2 * scene.edges().len()];
+    let mut next = starts.clone();
+    for (edge, ends) in (0..).zip(scene.edges()) {
+        let line = LineId(collinear.representative(edge).0);
+        for end in ends {
+            all[next[end.index()] as usize] = line;
+            next[end.index()] += 1;
+        }
+    }
+    let mut lines = Vec::with_capacity(all.len());
+    for vertex in 0..scene.vertices().len() {
+        let here = &mut all[starts[vertex] as usize..starts[vertex + 1] as usize];
+        here.sort_unstable();
+        let start = lines.len();
+        starts[vertex] = start as u32;
+        for &line in &*here {
+            if lines.len() == start || lines.last() != Some(&line) {
+                lines.push(line);
+            }
+        }
+    }
+    starts[scene.vertices().len()] = lines.len() as u32;
+    (lines, starts)
 }

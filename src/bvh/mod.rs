@@ -5,6 +5,8 @@
 //! [`SceneBvh::view`]. Both ways give the same labelled subdivision of the directions.
 
 mod build;
+mod moved;
+mod refit;
 mod solids;
 
 use crate::bsp::{Bounds, FragmentSide, Skeleton, bounds_of, whole_piece};
@@ -41,6 +43,8 @@ pub(crate) struct Hierarchy {
     sides: Vec<FragmentSide>,
     sides_start: Vec<u32>,
     solids: Solids,
+    /// What the boxes cost when they were made: see [`refit::cost`].
+    built_cost: f64,
 }
 
 /// The hierarchy of boxes of a scene. Cloning it is cheap: clones share their data.
@@ -55,18 +59,12 @@ impl SceneBvh {
     #[must_use]
     pub fn build(scene: &Scene) -> Self {
         let skeleton = Skeleton::new(scene);
-        let mut sides = Vec::new();
-        let mut sides_start = vec![0];
-        let mut bounds = Vec::with_capacity(scene.piece_count());
-        for piece in scene.pieces() {
-            let boundary = whole_piece(scene, piece.id());
-            bounds.push(bounds_of(&skeleton, &boundary));
-            sides.extend(boundary);
-            sides_start.push(sides.len() as u32);
-        }
+        let Boundaries { sides, sides_start, bounds } = Boundaries::of(scene, &skeleton);
         let (nodes, order) = build::boxes(&bounds);
         let solids = Solids::of(scene, &skeleton, &bounds);
-        let hierarchy = Hierarchy { scene: scene.clone(), skeleton, nodes, order, bounds, sides, sides_start, solids };
+        let built_cost = refit::cost(&nodes, &bounds);
+        let scene = scene.clone();
+        let hierarchy = Hierarchy { scene, skeleton, nodes, order, bounds, sides, sides_start, solids, built_cost };
         Self { hierarchy: Arc::new(hierarchy) }
     }
 
@@ -84,6 +82,27 @@ impl SceneBvh {
     /// inside when the eye is certainly outside.
     pub fn solid_pieces(&self) -> usize {
         self.hierarchy.solids.piece_count()
+    }
+}
+
+/// The boundaries of all pieces, one after the other, where each begins, and the boxes around them.
+struct Boundaries {
+    sides: Vec<FragmentSide>,
+    sides_start: Vec<u32>,
+    bounds: Vec<Bounds>,
+}
+
+impl Boundaries {
+    fn of(scene: &Scene, skeleton: &Skeleton) -> Self {
+        let bounds = Vec::with_capacity(scene.piece_count());
+        let mut all = Self { sides: Vec::new(), sides_start: vec![0], bounds };
+        for piece in scene.pieces() {
+            let start = all.sides.len();
+            all.sides.extend(whole_piece(scene, piece.id()));
+            all.bounds.push(bounds_of(skeleton, &all.sides[start..]));
+            all.sides_start.push(all.sides.len() as u32);
+        }
+        all
     }
 }
 

@@ -18,51 +18,78 @@ const NONE: u32 = u32::MAX;
 /// Pairs of boxes that may be compared, for each piece of a component, before it is given up.
 const PAIRS: usize = 50;
 
+/// A closed and oriented component.
 #[derive(Debug)]
-struct Solid {
+struct Component {
     bounds: Bounds,
-    /// The side of its pieces that faces the inside.
-    inside: Side,
+    pieces: usize,
+    /// The side of its pieces that faces the inside, if it is proved to be a solid.
+    inside: Option<Side>,
 }
 
 #[derive(Debug)]
 pub(super) struct Solids {
-    solids: Vec<Solid>,
-    /// The solid that a piece is part of.
-    solid_of: Vec<u32>,
+    components: Vec<Component>,
+    /// The component that a piece is part of.
+    component_of: Vec<u32>,
 }
 
 impl Solids {
     pub(super) fn of(scene: &Scene, skeleton: &Skeleton, bounds: &[Bounds]) -> Self {
-        let mut found = Self { solids: Vec::new(), solid_of: vec![NONE; scene.piece_count()] };
-        for component in closed_components(scene) {
-            let surface = Surface { scene, skeleton, bounds, pieces: &component };
-            if let Some(inside) = surface.inside()
-                && surface.is_embedded()
-            {
-                let around = component.iter().fold(Bounds::EMPTY, |all, piece| all.union(bounds[piece.index()]));
-                for piece in &component {
-                    found.solid_of[piece.index()] = found.solids.len() as u32;
-                }
-                found.solids.push(Solid { bounds: around, inside });
+        Self::with_verdicts(scene, bounds, |pieces| Surface { scene, skeleton, bounds, pieces }.proved_inside())
+    }
+
+    /// Those of a scene with objects moved. What no piece has moved of, come to or left is what it was; `before` tells of each piece
+    /// the number it had, if it has not moved.
+    pub(super) fn moved(
+        &self,
+        scene: &Scene,
+        skeleton: &Skeleton,
+        bounds: &[Bounds],
+        before: &[Option<PieceId>],
+    ) -> Self {
+        Self::with_verdicts(scene, bounds, |pieces| match self.known(pieces, before) {
+            Some(known) => known.inside,
+            None => Surface { scene, skeleton, bounds, pieces }.proved_inside(),
+        })
+    }
+
+    fn with_verdicts(scene: &Scene, bounds: &[Bounds], inside: impl Fn(&[PieceId]) -> Option<Side>) -> Self {
+        let mut found = Self { components: Vec::new(), component_of: vec![NONE; scene.piece_count()] };
+        for pieces in closed_components(scene) {
+            for piece in &pieces {
+                found.component_of[piece.index()] = found.components.len() as u32;
             }
+            let around = pieces.iter().fold(Bounds::EMPTY, |all, piece| all.union(bounds[piece.index()]));
+            found.components.push(Component { bounds: around, pieces: pieces.len(), inside: inside(&pieces) });
         }
         found
     }
 
-    pub(super) fn piece_count(&self) -> usize {
-        self.solid_of.iter().filter(|&&solid| solid != NONE).count()
+    /// The component that was made of exactly these pieces.
+    fn known(&self, pieces: &[PieceId], before: &[Option<PieceId>]) -> Option<&Component> {
+        let component_before = |piece: &PieceId| before[piece.index()].map(|piece| self.component_of[piece.index()]);
+        let number = component_before(pieces.first()?)?;
+        let component = self.components.get(number as usize)?;
+        let is_whole = component.pieces == pieces.len();
+        (is_whole && pieces.iter().all(|piece| component_before(piece) == Some(number))).then_some(component)
     }
 
+    pub(super) fn piece_count(&self) -> usize {
+        self.components.iter().filter(|component| component.inside.is_some()).map(|component| component.pieces).sum()
+    }
+
+    /// For each component, whether it is a solid that the eye is certainly outside of.
     pub(super) fn seen_from_outside(&self, eye: DVec3) -> Vec<bool> {
         let outside = |b: &Bounds| (eye.cmplt(b.low) | eye.cmpgt(b.high)).any();
-        self.solids.iter().map(|solid| outside(&solid.bounds)).collect()
+        let is_seen = |component: &Component| component.inside.is_some() && outside(&component.bounds);
+        self.components.iter().map(is_seen).collect()
     }
 
     pub(super) fn is_inside(&self, piece: PieceId, shown: Side, from_outside: &[bool]) -> bool {
-        match self.solid_of[piece.index()] {
+        match self.component_of[piece.index()] {
             NONE => false,
-            solid => from_outside[solid as usize] && self.solids[solid as usize].inside == shown,
+            component => from_outside[component as usize] && self.components[component as usize].inside == Some(shown),
         }
     }
 }
@@ -133,6 +160,11 @@ struct Surface<'a> {
 }
 
 impl Surface<'_> {
+    /// The side that faces the inside, if the surface is proved to bound a solid.
+    fn proved_inside(&self) -> Option<Side> {
+        self.inside().filter(|_| self.is_embedded())
+    }
+
     /// The side that faces the inside, by the sign of the volume, if rounding leaves no doubt.
     fn inside(&self) -> Option<Side> {
         let from = self.scene.piece(*self.pieces.first()?).points().next()?;

@@ -2,7 +2,7 @@
 
 use super::facets::Facets;
 use super::flat::orientation;
-use super::{Axis, Data, EdgeId, FaceSpec, Piece, PlaneId, Polygon, PolygonId, SceneProblem, Shape, Side};
+use super::{Axis, Data, EdgeId, MaterialId, ObjectId, Piece, PlaneId, Polygon, PolygonId, SceneProblem, Shape, Side};
 use super::{SupportingPlane, VertexId};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -32,7 +32,7 @@ impl Assembly {
     /// Adds the next polygon with its facets.
     pub(super) fn add_polygon(
         &mut self,
-        face: &FaceSpec,
+        (object, material): (ObjectId, MaterialId),
         rings: Vec<Vec<VertexId>>,
         facets: Facets,
     ) -> Result<(), SceneProblem> {
@@ -49,7 +49,6 @@ impl Assembly {
             self.add_piece(polygon, plane, facing, &ring)?;
         }
         let pieces = first..self.data.pieces.len() as u32;
-        let (object, material) = (face.object, face.material);
         self.data.polygons.push(Polygon { object, material, shape, rings, pieces });
         Ok(())
     }
@@ -73,14 +72,21 @@ impl Assembly {
         Ok(())
     }
 
-    fn edge(&mut self, a: VertexId, b: VertexId) -> Result<EdgeId, SceneProblem> {
+    /// The edge between two vertices, made if there is none yet.
+    pub(super) fn edge(&mut self, a: VertexId, b: VertexId) -> Result<EdgeId, SceneProblem> {
         let ends = [a.min(b), a.max(b)];
         if let Some(&known) = self.edges.get(&ends) {
             return Ok(known);
         }
+        let id = self.push_edge(ends)?;
+        self.edges.insert(ends, id);
+        Ok(id)
+    }
+
+    /// Adds an edge, with the smaller vertex first, that [`Assembly::edge`] will not be asked for.
+    pub(super) fn push_edge(&mut self, ends: [VertexId; 2]) -> Result<EdgeId, SceneProblem> {
         let id = EdgeId(next_id(self.data.edges.len(), "edges")?);
         self.data.edges.push(ends);
-        self.edges.insert(ends, id);
         Ok(id)
     }
 
@@ -88,17 +94,24 @@ impl Assembly {
     /// facets on it.
     fn plane(&mut self, corners: [VertexId; 3]) -> Result<(PlaneId, Side), SceneProblem> {
         let triangle = corners.map(|v| self.data.vertices[v.index()]);
-        let id = next_id(self.data.planes.len(), "planes")?;
         let Some((axis, value)) = axis_plane(triangle) else {
-            self.data.planes.push(SupportingPlane::Points(corners));
-            return Ok((PlaneId(id), Side::Front));
+            return Ok((self.add_plane(SupportingPlane::Points(corners))?, Side::Front));
         };
-        let id = *self.axis_planes.entry((axis, value.to_bits())).or_insert_with(|| {
-            self.data.planes.push(SupportingPlane::Axis { axis, value });
-            PlaneId(id)
-        });
         let facing = if orientation(triangle, axis).is_positive() { Side::Front } else { Side::Back };
-        Ok((id, facing))
+        Ok((self.add_plane(SupportingPlane::Axis { axis, value })?, facing))
+    }
+
+    /// Adds a plane; an axis-aligned one only if there is none yet.
+    pub(super) fn add_plane(&mut self, plane: SupportingPlane) -> Result<PlaneId, SceneProblem> {
+        let id = PlaneId(next_id(self.data.planes.len(), "planes")?);
+        if let SupportingPlane::Axis { axis, value } = plane {
+            let known = *self.axis_planes.entry((axis, value.to_bits())).or_insert(id);
+            if known != id {
+                return Ok(known);
+            }
+        }
+        self.data.planes.push(plane);
+        Ok(id)
     }
 }
 

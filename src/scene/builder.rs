@@ -2,7 +2,7 @@
 
 use super::assemble::{Assembly, next_id};
 use super::facets::Facets;
-use super::flat::distance;
+use super::flat::box_diagonal;
 use super::judge::{Broken, Judge};
 use super::repair::{note_welding, snap};
 use super::validate::{Counts, check_face, check_materials, check_vertices};
@@ -152,6 +152,7 @@ impl SceneBuilder {
         }
         data.objects = self.objects;
         data.materials = self.materials;
+        data.repair = self.repair;
         Ok(Scene { data: Arc::new(data) })
     }
 
@@ -181,7 +182,7 @@ impl SceneBuilder {
                         if !repairs.moved.is_empty() {
                             note_welding(polygon, face, facets.shape, [&self.vertices, &positions], &mut repairs);
                         }
-                        assembly.add_polygon(face, rings, facets)
+                        assembly.add_polygon((face.object, face.material), rings, facets)
                     }
                     Err(Broken { problem, cause: None }) => {
                         problems.push(problem);
@@ -189,7 +190,7 @@ impl SceneBuilder {
                     }
                     Err(Broken { problem, cause: Some(cause) }) => {
                         repairs.dropped.push(Dropped { polygon, cause, problem, size: self.size(face) });
-                        assembly.add_polygon(face, Vec::new(), Facets::dropped())
+                        assembly.add_polygon((face.object, face.material), Vec::new(), Facets::dropped())
                     }
                 }
             });
@@ -256,11 +257,7 @@ impl SceneBuilder {
 
     /// The diagonal of the box around the vertices of a face that exist and are finite.
     fn size(&self, face: &FaceSpec) -> f64 {
-        let positions = face.rings.iter().flatten().filter_map(|&v| self.vertices.get(v).filter(|p| p.is_finite()));
-        let bounds = positions.fold(None, |bounds, &p| {
-            let (low, high) = bounds.unwrap_or((p, p));
-            Some((p.min(low), p.max(high)))
-        });
-        bounds.map_or(0.0, |(low, high)| distance(low, high))
+        let positions = face.rings.iter().flatten().filter_map(|&v| self.vertices.get(v));
+        box_diagonal(positions.copied().filter(|p| p.is_finite()))
     }
 }

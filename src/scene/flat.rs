@@ -63,6 +63,15 @@ pub(super) fn distance(a: DVec3, b: DVec3) -> f64 {
     unscaled((step * scale).length(), scale * 0.5)
 }
 
+/// The diagonal of the box around some points, rounded; 0 without any.
+pub(super) fn box_diagonal(points: impl IntoIterator<Item = DVec3>) -> f64 {
+    let bounds = points.into_iter().fold(None, |bounds, p| {
+        let (low, high) = bounds.unwrap_or((p, p));
+        Some((p.min(low), p.max(high)))
+    });
+    bounds.map_or(0.0, |(low, high)| distance(low, high))
+}
+
 /// Three vertices that span a large triangle, in ascending order of their places; `None` if all
 /// points are collinear.
 ///

@@ -64,7 +64,8 @@ impl<'a> Judge<'a> {
         Err(Broken { problem: SceneProblem::NonPlanar { polygon }, cause })
     }
 
-    fn check_duplicate(&mut self, polygon: PolygonId, rings: &[Vec<VertexId>]) -> Result<(), Broken> {
+    /// Checks the next face with area against those before, if duplicates matter.
+    pub(super) fn check_duplicate(&mut self, polygon: PolygonId, rings: &[Vec<VertexId>]) -> Result<(), Broken> {
         let cause = match self.repair.duplicates {
             DuplicatePolicy::Keep => return Ok(()),
             DuplicatePolicy::Reject => None,

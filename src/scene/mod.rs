@@ -12,6 +12,7 @@ mod facets;
 mod flat;
 mod judge;
 mod material;
+mod moved;
 mod problem;
 mod repair;
 mod report;
@@ -22,6 +23,7 @@ mod weld;
 
 pub use builder::{FaceSpec, SceneBuilder};
 pub use material::Material;
+pub use moved::MoveError;
 pub use problem::{SceneError, SceneProblem};
 pub use repair::{
     DropCause, Dropped, DuplicatePolicy, MovedVertex, NonPlanarPolicy, OrDrop, Repair, RepairSpecError, Repairs,
@@ -31,6 +33,8 @@ pub use report::{
     Component, CoplanarOverlap, CrowdedEdge, Fronts, MeshReport, NonPlanarPolygon, OpenEdge, Orientation, TJunction,
 };
 pub use splitter::Splitter;
+
+pub(crate) use moved::Carried;
 
 use glam::DVec3;
 use std::ops::Range;
@@ -163,7 +167,7 @@ pub enum Shape {
     Dropped,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Polygon {
     object: ObjectId,
     material: MaterialId,
@@ -173,7 +177,7 @@ struct Polygon {
     pieces: Range<u32>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Piece {
     polygon: PolygonId,
     plane: PlaneId,
@@ -184,7 +188,7 @@ struct Piece {
     len: u32,
 }
 
-#[derive(Debug, Default)]
+#[derive(Debug, Default, PartialEq)]
 struct Data {
     vertices: Vec<DVec3>,
     edges: Vec<[VertexId; 2]>,
@@ -195,6 +199,8 @@ struct Data {
     piece_edges: Vec<EdgeId>,
     objects: Vec<String>,
     materials: Vec<Material>,
+    /// What becomes of broken faces, also when they move.
+    repair: Repair,
     repairs: Repairs,
 }
 

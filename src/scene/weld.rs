@@ -31,9 +31,13 @@ pub(super) fn weld(positions: &[DVec3], used: &[bool]) -> Welded {
     welded
 }
 
-/// The ids of a ring, with equal neighbours merged all around.
+/// The ids of a ring of vertices of the input, with equal neighbours merged.
 pub(super) fn merged(ring: &[usize], ids: &[Option<VertexId>]) -> Vec<VertexId> {
-    let mut merged: Vec<VertexId> = ring.iter().filter_map(|&k| ids.get(k).copied().flatten()).collect();
+    without_repeats(ring.iter().filter_map(|&k| ids.get(k).copied().flatten()).collect())
+}
+
+/// A ring with equal neighbours merged all around.
+pub(super) fn without_repeats(mut merged: Vec<VertexId>) -> Vec<VertexId> {
     merged.dedup();
     while merged.len() > 1 && merged.first() == merged.last() {
         merged.pop();
