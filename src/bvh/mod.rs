@@ -1,17 +1,20 @@
 //! A hierarchy of boxes around the pieces of a scene: the second way to a contour image, without cutting polygons.
 //!
 //! The report (Jacob 1995) takes exact front-to-back order from a 3D BSP, at the price of polygons that it cuts. Here
-//! whole pieces come roughly from near to far, and exact depth is decided where two of them meet in the image: see
+//! whole pieces come roughly from near to far, neighbours in one plane together, and exact depth is decided where two of them meet in the image: see
 //! [`SceneBvh::view`]. Both ways give the same labelled subdivision of the directions.
 
 mod build;
 mod moved;
+mod panels;
 mod refit;
 mod solids;
 
-use crate::bsp::{Bounds, FragmentSide, Skeleton, bounds_of, whole_piece};
-use crate::scene::{PieceId, Scene, Side};
+use crate::bsp::{Bounds, Skeleton, bounds_of, whole_piece};
+use crate::scene::{PieceId, PieceRef, Scene, Side};
 use glam::DVec3;
+use panels::Panels;
+pub(crate) use panels::{Panel, vertex};
 use solids::Solids;
 use std::ops::Range;
 use std::sync::Arc;
@@ -28,7 +31,7 @@ pub(crate) enum Content {
     /// The numbers of two boxes.
     Boxes([u32; 2]),
     /// Places in [`Hierarchy::order`].
-    Pieces(Range<u32>),
+    Panels(Range<u32>),
 }
 
 #[derive(Debug)]
@@ -37,11 +40,9 @@ pub(crate) struct Hierarchy {
     pub(crate) skeleton: Skeleton,
     /// The root is the first.
     pub(crate) nodes: Vec<BvhNode>,
-    /// The pieces in the order of the boxes that hold them.
-    pub(crate) order: Vec<PieceId>,
-    pub(crate) bounds: Vec<Bounds>,
-    sides: Vec<FragmentSide>,
-    sides_start: Vec<u32>,
+    pub(crate) panels: Panels,
+    /// The panels that are no half of another one, in the order of the boxes that hold them.
+    pub(crate) order: Vec<u32>,
     solids: Solids,
     /// What the boxes cost when they were made: see [`refit::cost`].
     built_cost: f64,
@@ -59,12 +60,14 @@ impl SceneBvh {
     #[must_use]
     pub fn build(scene: &Scene) -> Self {
         let skeleton = Skeleton::new(scene);
-        let Boundaries { sides, sides_start, bounds } = Boundaries::of(scene, &skeleton);
-        let (nodes, order) = build::boxes(&bounds);
+        let bounds = bounds_of_pieces(scene, &skeleton);
         let solids = Solids::of(scene, &skeleton, &bounds);
-        let built_cost = refit::cost(&nodes, &bounds);
-        let scene = scene.clone();
-        let hierarchy = Hierarchy { scene, skeleton, nodes, order, bounds, sides, sides_start, solids, built_cost };
+        let pieces: Vec<PieceId> = scene.pieces().map(PieceRef::id).collect();
+        let (panels, roots) = Panels::of(scene, &skeleton, &[&pieces], |a, b| solids.are_hidden_together(a, b));
+        let roots = roots.into_iter().flatten().collect();
+        let (nodes, order) = build::boxes(roots, |panel| panels.panel(panel).bounds);
+        let built_cost = refit::cost(&panels, &nodes, &order, scene.piece_count());
+        let hierarchy = Hierarchy { scene: scene.clone(), skeleton, nodes, panels, order, solids, built_cost };
         Self { hierarchy: Arc::new(hierarchy) }
     }
 
@@ -85,34 +88,12 @@ impl SceneBvh {
     }
 }
 
-/// The boundaries of all pieces, one after the other, where each begins, and the boxes around them.
-struct Boundaries {
-    sides: Vec<FragmentSide>,
-    sides_start: Vec<u32>,
-    bounds: Vec<Bounds>,
-}
-
-impl Boundaries {
-    fn of(scene: &Scene, skeleton: &Skeleton) -> Self {
-        let bounds = Vec::with_capacity(scene.piece_count());
-        let mut all = Self { sides: Vec::new(), sides_start: vec![0], bounds };
-        for piece in scene.pieces() {
-            let start = all.sides.len();
-            all.sides.extend(whole_piece(scene, piece.id()));
-            all.bounds.push(bounds_of(skeleton, &all.sides[start..]));
-            all.sides_start.push(all.sides.len() as u32);
-        }
-        all
-    }
+/// The boxes around all pieces.
+fn bounds_of_pieces(scene: &Scene, skeleton: &Skeleton) -> Vec<Bounds> {
+    scene.pieces().map(|piece| bounds_of(skeleton, &whole_piece(scene, piece.id()))).collect()
 }
 
 impl Hierarchy {
-    /// The boundary of a piece.
-    pub(crate) fn sides(&self, piece: PieceId) -> &[FragmentSide] {
-        let [start, end] = [0, 1].map(|k| self.sides_start[piece.index() + k] as usize);
-        &self.sides[start..end]
-    }
-
     /// For each solid, whether the eye is certainly outside of it.
     pub(crate) fn solids_seen_from_outside(&self, eye: DVec3) -> Vec<bool> {
         self.solids.seen_from_outside(eye)

@@ -1,7 +1,8 @@
 //! A hierarchy for a scene with objects moved, without building it anew.
 
-use super::{Boundaries, Hierarchy, SceneBvh, build, refit};
-use crate::scene::{MoveError, ObjectId};
+use super::panels::Panels;
+use super::{Hierarchy, SceneBvh, bounds_of_pieces, refit};
+use crate::scene::{MoveError, ObjectId, PieceId};
 use glam::DAffine3;
 use std::sync::Arc;
 
@@ -36,19 +37,18 @@ impl SceneBvh {
     pub fn moved(&self, moves: &[(ObjectId, DAffine3)]) -> Result<Self, MoveError> {
         let old = &*self.hierarchy;
         let (scene, carried) = old.scene.carried_over(moves)?;
+        if old.order.is_empty() {
+            return Ok(Self::build(&scene));
+        }
         let skeleton = old.skeleton.moved(&scene, &carried);
-        let Boundaries { sides, sides_start, bounds } = Boundaries::of(&scene, &skeleton);
+        let bounds = bounds_of_pieces(&scene, &skeleton);
         let solids = old.solids.moved(&scene, &skeleton, &bounds, &carried.pieces);
-        let (nodes, order, built_cost) = if old.order.is_empty() {
-            let (nodes, order) = build::boxes(&bounds);
-            let cost = refit::cost(&nodes, &bounds);
-            (nodes, order, cost)
-        } else {
-            let places = refit::places(&old.scene, &scene);
-            let (nodes, order) = refit::refit(&old.nodes, &old.order, &places, &bounds);
-            (nodes, order, old.built_cost)
-        };
-        let hierarchy = Hierarchy { scene, skeleton, nodes, order, bounds, sides, sides_start, solids, built_cost };
+        let places = refit::places(&old.scene, &scene);
+        let (mut nodes, groups) = refit::refit(&old.nodes, &old.order, &old.panels, &places);
+        let groups: Vec<&[PieceId]> = groups.iter().map(Vec::as_slice).collect();
+        let (panels, groups) = Panels::of(&scene, &skeleton, &groups, |a, b| solids.are_hidden_together(a, b));
+        let order = refit::fit(&mut nodes, &groups, &panels);
+        let hierarchy = Hierarchy { scene, skeleton, nodes, panels, order, solids, built_cost: old.built_cost };
         Ok(Self { hierarchy: Arc::new(hierarchy) })
     }
 
@@ -57,8 +57,8 @@ impl SceneBvh {
     ///
     /// It is an estimate of what views cost, of the whole scene whatever is seen. 1 also where there is nothing, and where surfaces overflow.
     pub fn looseness(&self) -> f64 {
-        let Hierarchy { nodes, bounds, built_cost, .. } = &*self.hierarchy;
-        let ratio = refit::cost(nodes, bounds) / built_cost;
+        let Hierarchy { scene, nodes, panels, order, built_cost, .. } = &*self.hierarchy;
+        let ratio = refit::cost(panels, nodes, order, scene.piece_count()) / built_cost;
         if ratio.is_finite() { ratio } else { 1.0 }
     }
 }

@@ -1,5 +1,6 @@
 //! Boxes of pieces that have moved: the tree stays, and what it holds is fitted anew.
 
+use super::panels::Panels;
 use super::{BvhNode, Content};
 use crate::bsp::Bounds;
 use crate::scene::{PieceId, Scene};
@@ -29,26 +30,27 @@ pub(super) fn places(before: &Scene, after: &Scene) -> Vec<Range<u32>> {
     places
 }
 
-/// The boxes with the pieces that take the places of those before, which have these boxes. Boxes that nothing is left of are left out.
+/// The boxes, their bounds not known yet, with the pieces that take the places of those before: for each box that holds some its content is a
+/// range of groups, which is the one group of its own. Boxes that nothing is left of are left out.
 pub(super) fn refit(
     nodes: &[BvhNode],
-    order: &[PieceId],
+    order: &[u32],
+    panels: &Panels,
     places: &[Range<u32>],
-    bounds: &[Bounds],
-) -> (Vec<BvhNode>, Vec<PieceId>) {
-    let mut new_order = Vec::with_capacity(bounds.len());
-    let mut starts = vec![0];
-    for piece in order {
-        new_order.extend(places[piece.index()].clone().map(PieceId));
-        starts.push(new_order.len() as u32);
-    }
-    let pieces = |range: &Range<u32>| starts[range.start as usize]..starts[range.end as usize];
+) -> (Vec<BvhNode>, Vec<Vec<PieceId>>) {
+    let pieces = |range: &Range<u32>| {
+        let mut before = Vec::new();
+        for &panel in &order[range.start as usize..range.end as usize] {
+            panels.pieces(panel, &mut before);
+        }
+        before.into_iter().flat_map(|piece| places[piece.index()].clone().map(PieceId)).collect::<Vec<_>>()
+    };
     // Boxes within a box come after it.
     let mut is_empty = vec![true; nodes.len()];
     for (k, node) in nodes.iter().enumerate().rev() {
         is_empty[k] = match &node.content {
             Content::Boxes(boxes) => boxes.iter().all(|&k| is_empty[k as usize]),
-            Content::Pieces(range) => pieces(range).is_empty(),
+            Content::Panels(range) => pieces(range).is_empty(),
         };
     }
     // The outermost box around the same pieces as box `k` that holds pieces or two boxes with some.
@@ -61,9 +63,13 @@ pub(super) fn refit(
     };
     let mut from = if is_empty.first() == Some(&false) { vec![essential(0)] } else { Vec::new() };
     let mut new_nodes = Vec::with_capacity(nodes.len());
+    let mut groups = Vec::new();
     while let Some(&k) = from.get(new_nodes.len()) {
         let content = match &nodes[k as usize].content {
-            Content::Pieces(range) => Content::Pieces(pieces(range)),
+            Content::Panels(range) => {
+                groups.push(pieces(range));
+                Content::Panels(groups.len() as u32 - 1..groups.len() as u32)
+            }
             Content::Boxes(boxes) => {
                 let first = from.len() as u32;
                 from.extend(boxes.map(essential));
@@ -72,27 +78,41 @@ pub(super) fn refit(
         };
         new_nodes.push(BvhNode { bounds: Bounds::EMPTY, content });
     }
-    for k in (0..new_nodes.len()).rev() {
-        new_nodes[k].bounds = match &new_nodes[k].content {
-            Content::Boxes([a, b]) => new_nodes[*a as usize].bounds.union(new_nodes[*b as usize].bounds),
-            Content::Pieces(range) => new_order[range.start as usize..range.end as usize]
-                .iter()
-                .fold(Bounds::EMPTY, |all, piece: &PieceId| all.union(bounds[piece.index()])),
+    (new_nodes, groups)
+}
+
+/// Gives boxes that hold groups of panels their bounds, and the panels an order.
+pub(super) fn fit(nodes: &mut [BvhNode], groups: &[Vec<u32>], panels: &Panels) -> Vec<u32> {
+    let mut order = Vec::new();
+    for k in (0..nodes.len()).rev() {
+        nodes[k].bounds = match nodes[k].content.clone() {
+            Content::Boxes([a, b]) => nodes[a as usize].bounds.union(nodes[b as usize].bounds),
+            Content::Panels(group) => {
+                let group = &groups[group.start as usize];
+                let start = order.len() as u32;
+                order.extend(group);
+                nodes[k].content = Content::Panels(start..order.len() as u32);
+                group.iter().fold(Bounds::EMPTY, |all, &panel| all.union(panels.panel(panel).bounds))
+            }
         };
     }
-    (new_nodes, new_order)
+    order
 }
 
 /// What a tree of boxes costs by the surface-area heuristic: the surface of all boxes, those of pieces once for each piece, over that of the
 /// pieces' own boxes. Not finite where surfaces overflow or vanish.
-pub(super) fn cost(nodes: &[BvhNode], bounds: &[Bounds]) -> f64 {
+pub(super) fn cost(panels: &Panels, nodes: &[BvhNode], order: &[u32], piece_count: usize) -> f64 {
     let unit = nodes.first().map_or(0.0, |root| root.bounds.extent());
     let weighed = nodes.iter().map(|node| {
         let times = match &node.content {
-            Content::Boxes(_) => 1.0,
-            Content::Pieces(range) => range.len() as f64,
+            Content::Boxes(_) => 1,
+            Content::Panels(range) => {
+                let held = &order[range.start as usize..range.end as usize];
+                held.iter().map(|&panel| panels.panel(panel).piece_count()).sum()
+            }
         };
-        node.bounds.half_area(unit) * times
+        node.bounds.half_area(unit) * f64::from(times)
     });
-    weighed.sum::<f64>() / bounds.iter().map(|bounds| bounds.half_area(unit)).sum::<f64>()
+    let own = (0..piece_count as u32).map(|piece| panels.panel(piece).bounds.half_area(unit));
+    weighed.sum::<f64>() / own.sum::<f64>()
 }

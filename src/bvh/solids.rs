@@ -86,6 +86,13 @@ impl Solids {
         self.components.iter().map(is_seen).collect()
     }
 
+    /// True if [`Solids::is_inside`] says the same of both pieces, from wherever they are seen.
+    pub(super) fn are_hidden_together(&self, a: PieceId, b: PieceId) -> bool {
+        let [a, b] = [a, b].map(|piece| self.component_of[piece.index()]);
+        let is_solid = |component: u32| self.components.get(component as usize).is_some_and(|c| c.inside.is_some());
+        a == b || !(is_solid(a) || is_solid(b))
+    }
+
     pub(super) fn is_inside(&self, piece: PieceId, shown: Side, from_outside: &[bool]) -> bool {
         match self.component_of[piece.index()] {
             NONE => false,

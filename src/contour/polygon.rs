@@ -67,8 +67,8 @@ impl Knife {
         sides
     }
 
-    /// Cuts a polygon, classified last, whose corners lie on both sides. `known(arc)` may name the
-    /// direction in which the polygon's arc crosses the circle, if there is one already.
+    /// Cuts a polygon, classified last, whose corners lie on both sides. `known` may name the
+    /// direction in which an arc of the polygon crosses the circle, if there is one already.
     #[allow(clippy::too_many_arguments, reason = "the parts of a view are borrowed apart")]
     pub(crate) fn cut(
         &mut self,
@@ -76,7 +76,7 @@ impl Knife {
         directions: &mut Directions,
         polygon: &[PolygonArc],
         circle: CircleId,
-        known: impl Fn(PolygonArc) -> Option<DirectionId>,
+        mut known: impl FnMut(&mut Directions, &mut ExactCache, PolygonArc) -> Option<DirectionId>,
         negative: &mut Vec<PolygonArc>,
         positive: &mut Vec<PolygonArc>,
     ) {
@@ -99,7 +99,7 @@ impl Knife {
             if here * there == Sign::Negative {
                 // The boundary turns about the inward normal n of the arc; going from the positive
                 // to the negative side of t it meets t at n x t, the other way at t x n.
-                let from = known(arc).unwrap_or_else(|| {
+                let from = known(directions, &mut self.cache, arc).unwrap_or_else(|| {
                     let reversed = arc.along.inside() * here == Sign::Negative;
                     directions.push_crossing(skeleton, [arc.along.circle(), circle], reversed, &mut self.cache)
                 });

@@ -122,11 +122,11 @@ fn quarter_faces(
         let unit = |axis: usize| DVec3::AXES[axis] * signs[axis];
         // The face of x against y, then the winner against z.
         let half = circles.half_sphere(tree, skeleton, unit(0) - unit(1), work);
-        let sides = tree.cut_leaf(skeleton, leaf, half, work);
+        let sides = tree.cut_leaf(skeleton, leaf, half, |_, _, _| None, work);
         for (axis, side) in [0, 1].into_iter().zip(sides) {
             let Some(side) = side else { continue };
             let half = circles.half_sphere(tree, skeleton, unit(axis) - unit(2), work);
-            let faces = tree.cut_leaf(skeleton, side, half, work);
+            let faces = tree.cut_leaf(skeleton, side, half, |_, _, _| None, work);
             for (axis, leaf) in [axis, 2].into_iter().zip(faces) {
                 let square = Square {
                     across: [1, 2].map(|k| unit((axis + k) % 3)),
@@ -164,7 +164,8 @@ fn image_plane(
     let mut inner = tree.open_leaves();
     for border in [u, -u, v, -v] {
         let half = circles.half_sphere(tree, skeleton, towards * edge - border, work);
-        inner = inner.into_iter().filter_map(|leaf| tree.cut_leaf(skeleton, leaf, half, work)[0]).collect();
+        inner =
+            inner.into_iter().filter_map(|leaf| tree.cut_leaf(skeleton, leaf, half, |_, _, _| None, work)[0]).collect();
     }
     inner.into_iter().map(|leaf| (leaf, square)).collect()
 }
@@ -185,7 +186,7 @@ fn quarter(
                 let middle = f64::midpoint(square.low[direction], square.high[direction]);
                 let normal = square.across[direction] - square.towards * square.spacing.coordinate(middle);
                 let half = circles.half_sphere(tree, skeleton, normal, work);
-                let [above, below] = tree.cut_leaf(skeleton, leaf, half, work);
+                let [above, below] = tree.cut_leaf(skeleton, leaf, half, |_, _, _| None, work);
                 let (mut upper, mut lower) = (square, square);
                 upper.low[direction] = middle;
                 lower.high[direction] = middle;

@@ -1,6 +1,6 @@
 //! The contour tree: a 2D BSP on the sphere of directions.
 
-use super::directions::{CircleId, DirectionId, Directions};
+use super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
 use crate::bsp::Skeleton;
 use crate::exact::{SeenBox, Sign};
@@ -87,6 +87,8 @@ pub(crate) struct Workspace {
     positive: Vec<PolygonArc>,
     region: Vec<PolygonArc>,
     links: Vec<Link>,
+    /// The leaves that the last insertion filled.
+    pub(crate) filled: Vec<u32>,
     /// How many tree nodes insertions went through.
     pub(crate) visited: u64,
 }
@@ -217,10 +219,15 @@ impl ContourTree {
         }
     }
 
+    /// Names the piece that is seen in a leaf that one as far away fills.
+    pub(crate) fn rename(&mut self, leaf: u32, piece: PieceId) {
+        self.leaves[leaf as usize].state = LeafState::Filled(piece);
+    }
+
     /// Leaves everything on the other side of `domain` outside.
     pub(crate) fn clip(&mut self, skeleton: &Skeleton, domain: HalfSphere, work: &mut Workspace) {
         for leaf in self.open_leaves() {
-            let [inside, outside] = self.cut_leaf(skeleton, leaf, domain, work);
+            let [inside, outside] = self.cut_leaf(skeleton, leaf, domain, |_, _, _| None, work);
             debug_assert!(inside.is_some() || outside.is_some());
             if let Some(outside) = outside {
                 self.close(outside, LeafState::Outside, 0.0);
@@ -233,19 +240,19 @@ impl ContourTree {
         (0..self.leaves.len() as u32).filter(|&leaf| self.leaves[leaf as usize].state == LeafState::Open).collect()
     }
 
-    /// Cuts an open leaf in two; gives the leaves inside and outside of the half sphere. One of them
-    /// is missing if the circle does not meet the leaf's interior.
+    /// Cuts a leaf in two of the same state; gives the leaves inside and outside of the half sphere. One of them
+    /// is missing if the circle does not meet the leaf's interior. `known` is as for [`Knife::cut`].
     pub(crate) fn cut_leaf(
         &mut self,
         skeleton: &Skeleton,
         leaf: u32,
         half: HalfSphere,
+        known: impl FnMut(&mut Directions, &mut ExactCache, PolygonArc) -> Option<DirectionId>,
         work: &mut Workspace,
     ) -> [Option<u32>; 2] {
-        let Leaf { start, len, parent, .. } = self.leaves[leaf as usize];
-        work.region.clear();
-        work.region.extend_from_slice(&self.arcs[start as usize..(start + len) as usize]);
-        let sides = work.knife.classify(skeleton, &self.directions, &work.region, half.circle());
+        let Leaf { state, far, start, len, parent } = self.leaves[leaf as usize];
+        let region = &self.arcs[start as usize..(start + len) as usize];
+        let sides = work.knife.classify(skeleton, &self.directions, region, half.circle());
         if let Some(only) = one_side(sides, half.inside()) {
             return if only == half.inside() { [Some(leaf), None] } else { [None, Some(leaf)] };
         }
@@ -254,26 +261,26 @@ impl ContourTree {
         work.knife.cut(
             skeleton,
             &mut self.directions,
-            &work.region,
+            region,
             half.circle(),
-            |_| None,
+            known,
             &mut work.negative,
             &mut work.positive,
         );
         let node = self.nodes.len() as u32;
         self.replace(parent, Link::Leaf(leaf), Link::Node(node));
         // The leaf itself becomes the negative child, so that no leaf is ever out of the tree.
-        let positive = self.push_leaf(&work.positive, Some(node));
-        self.leaves[leaf as usize] = self.open_leaf(&work.negative, Some(node));
-        self.nodes.push(TreeNode {
-            circle: half.circle(),
-            negative: Link::Leaf(leaf),
-            positive,
-            parent,
-            far: f64::INFINITY,
+        let other = self.leaves.len() as u32;
+        let [negative, positive] = [&work.negative, &work.positive].map(|boundary| Leaf {
+            state,
+            far,
+            ..self.open_leaf(boundary, Some(node))
         });
-        let Link::Leaf(positive) = positive else { return [None, None] };
-        if half.inside().is_positive() { [Some(positive), Some(leaf)] } else { [Some(leaf), Some(positive)] }
+        self.leaves[leaf as usize] = negative;
+        self.leaves.push(positive);
+        let (negative, positive) = (Link::Leaf(leaf), Link::Leaf(other));
+        self.nodes.push(TreeNode { circle: half.circle(), negative, positive, parent, far });
+        if half.inside().is_positive() { [Some(other), Some(leaf)] } else { [Some(leaf), Some(other)] }
     }
 
     /// Puts in a convex spherical polygon, which is all on the side of `top` where that is and within the projection of `seen`: it
@@ -291,6 +298,7 @@ impl ContourTree {
     ) {
         work.arcs.clear();
         work.arcs.extend_from_slice(polygon);
+        work.filled.clear();
         work.stack.clear();
         work.stack.push((top, 0, polygon.len()));
         while let Some((link, start, len)) = work.stack.pop() {
@@ -334,7 +342,7 @@ impl ContourTree {
                         &mut self.directions,
                         part,
                         circle,
-                        |_| None,
+                        |_, _, _| None,
                         &mut work.negative,
                         &mut work.positive,
                     );
@@ -383,7 +391,7 @@ impl ContourTree {
             &mut self.directions,
             &work.arcs[polygon],
             half.circle(),
-            |_| None,
+            |_, _, _| None,
             &mut work.negative,
             &mut work.positive,
         );
@@ -416,7 +424,7 @@ impl ContourTree {
             // crossed at the polygon's own corner.
             let previous = work.arcs[if k == polygon.start { polygon.end - 1 } else { k - 1 }];
             let next = work.arcs[if k + 1 == polygon.end { polygon.start } else { k + 1 }];
-            let known = |arc: PolygonArc| {
+            let known = |_: &mut Directions, _: &mut ExactCache, arc: PolygonArc| {
                 let circle = arc.along.circle();
                 if circle == previous.along.circle() {
                     Some(side.from)
@@ -453,6 +461,7 @@ impl ContourTree {
         }
         self.leaves[leaf as usize] = self.open_leaf(&work.arcs[polygon], parent);
         self.close(leaf, LeafState::Filled(filler.piece), filler.far);
+        work.filled.push(leaf);
     }
 
     /// True if nothing in the box, which is at least `near` from the eye, can be seen: every leaf that its projection

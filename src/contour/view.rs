@@ -181,9 +181,6 @@ impl<'a> Sight<'a> {
 
     /// Makes `polygon` the cone of a boundary on the plane of a piece, of which the eye is shown that side.
     fn look_at(&mut self, piece: PieceRef<'_>, sides: &[FragmentSide], shown: Side) {
-        // On which side of the plane, as the plane is defined, the eye is.
-        let height = if shown == piece.facing() { Sign::Positive } else { Sign::Negative };
-        let own = piece.plane_id();
         self.buffers.polygon.clear();
         for k in 0..sides.len() {
             // Counter-clockwise around the front is clockwise on the sphere, seen from outside of it,
@@ -195,28 +192,31 @@ impl<'a> Sight<'a> {
                     (sides[k], sides[if k + 1 == sides.len() { 0 } else { k + 1 }].point)
                 }
             };
-            let (line, same_way) = self.skeleton.representative(side.line);
-            let forward = if side.forward == same_way { Sign::Positive } else { Sign::Negative };
-            let inside = match self.skeleton.line(line) {
-                // (a - e) x (b - e) points inwards where the boundary runs from a to b.
-                LineDef::Edge(_) => match shown {
-                    Side::Back => forward,
-                    Side::Front => -forward,
-                },
-                // On a plane at height h_1 under the eye, what is in front of the other plane has the
-                // sign of -h_1 for the crease h_2 N_1 - h_1 N_2.
-                LineDef::Crease([first, _]) => {
-                    if first == own {
-                        -(height * forward)
-                    } else {
-                        height * forward
-                    }
-                }
-            };
             let from = self.direction(from);
-            let along = HalfSphere::new(self.circle(line), inside);
+            let along = self.half_sphere(piece, side, shown);
             self.buffers.polygon.push(PolygonArc { from, along });
         }
+    }
+
+    /// The half sphere of a side of a boundary on the plane of a piece, of which the eye is shown that side: the boundary's inside is in it.
+    fn half_sphere(&mut self, piece: PieceRef<'_>, side: FragmentSide, shown: Side) -> HalfSphere {
+        let (line, same_way) = self.skeleton.representative(side.line);
+        let forward = if side.forward == same_way { Sign::Positive } else { Sign::Negative };
+        let inside = match self.skeleton.line(line) {
+            // (a - e) x (b - e) points inwards where the boundary runs from a to b.
+            LineDef::Edge(_) => match shown {
+                Side::Back => forward,
+                Side::Front => -forward,
+            },
+            // On a plane at height h_1 under the eye, what is in front of the other plane has the
+            // sign of -h_1 for the crease h_2 N_1 - h_1 N_2.
+            LineDef::Crease([first, _]) => {
+                // On which side of the plane, as the plane is defined, the eye is.
+                let height = if shown == piece.facing() { Sign::Positive } else { Sign::Negative };
+                if first == piece.plane_id() { -(height * forward) } else { height * forward }
+            }
+        };
+        HalfSphere::new(self.circle(line), inside)
     }
 
     fn circle(&mut self, line: LineId) -> CircleId {

@@ -109,7 +109,7 @@ impl<'a> Mosaic<'a> {
                     negative.clear();
                     positive.clear();
                     let directions = self.directions.to_mut();
-                    let none = |_| None;
+                    let none = |_: &mut _, _: &mut _, _| None;
                     self.knife.cut(self.skeleton, directions, boundary, circle, none, &mut negative, &mut positive);
                     let [mut below, mut above] = [&negative, &positive].map(|part| {
                         let start = self.arcs.len() as u32;

@@ -1,7 +1,7 @@
-//! The second way: whole pieces roughly from near to far, from a hierarchy of boxes; where a piece meets what
+//! The second way: whole pieces, or panels of them, roughly from near to far, from a hierarchy of boxes; where one meets what
 //! fills a cell already, the planes of the two decide which is nearer.
 
-use super::super::directions::{CircleId, Directions};
+use super::super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use super::super::domain::Domain;
 use super::super::image::ContourImage;
 use super::super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
@@ -9,10 +9,10 @@ use super::super::tree::{Filler, Link, Verdict};
 use super::super::viewpoint::Viewpoint;
 use super::space::Buffers;
 use super::{Sight, ViewError, ViewOptions, ViewSpace};
-use crate::bsp::Bounds;
-use crate::bvh::{Content, Hierarchy, SceneBvh};
+use crate::bsp::{Bounds, FragmentSide, LineId};
+use crate::bvh::{Content, Hierarchy, Panel, SceneBvh, vertex};
 use crate::exact::{SeenBox, Sign, U};
-use crate::scene::{PieceId, PieceRef, PlaneId, Side};
+use crate::scene::{PieceId, PieceRef, PlaneId, Side, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -65,7 +65,7 @@ impl SceneBvh {
         let hierarchy = &*self.hierarchy;
         let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options, space)?;
         let from_outside = hierarchy.solids_seen_from_outside(sight.eye);
-        let mut walk = Walk { hierarchy, sight, from_outside, creases: FxHashMap::default() };
+        let mut walk = Walk { hierarchy, sight, from_outside, creases: FxHashMap::default(), parts: Vec::new() };
         walk.run(options.max_cells)?;
         Ok(walk.sight.finish(self.clone().into(), viewpoint, domain, space))
     }
@@ -76,6 +76,8 @@ struct Walk<'a> {
     sight: Sight<'a>,
     from_outside: Vec<bool>,
     creases: FxHashMap<[PlaneId; 2], CircleId>,
+    /// Leaves in which a panel is seen, its pieces not told apart yet.
+    parts: Vec<(u32, u32)>,
 }
 
 impl Walk<'_> {
@@ -101,9 +103,9 @@ impl Walk<'_> {
                     let [first, second] = boxes.map(|k| (near(k), k, top));
                     stack.extend(if first.0 <= second.0 { [second, first] } else { [first, second] });
                 }
-                Content::Pieces(range) => {
-                    for &piece in &hierarchy.order[range.start as usize..range.end as usize] {
-                        self.insert(piece, top);
+                Content::Panels(range) => {
+                    for &panel in &hierarchy.order[range.start as usize..range.end as usize] {
+                        self.put_in(panel, top);
                     }
                 }
             }
@@ -111,28 +113,87 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn insert(&mut self, id: PieceId, top: Link) {
-        let Self { hierarchy, sight, from_outside, creases } = self;
-        let eye = sight.eye;
-        let piece = hierarchy.scene.piece(id);
-        let Some(shown) = hierarchy.skeleton.shown_side(piece, eye) else { return };
-        if hierarchy.is_inside(id, shown, from_outside) {
-            return;
+    /// Puts in a panel; piece by piece if others lie in its plane, where the numbers of polygons tell which is seen.
+    fn put_in(&mut self, panel: u32, top: Link) {
+        if self.insert(panel, top) == Outcome::OneByOne {
+            let mut pieces = Vec::new();
+            self.hierarchy.panels.pieces(panel, &mut pieces);
+            for piece in pieces {
+                self.insert(piece.0, top);
+            }
         }
-        sight.look_at(piece, hierarchy.sides(id), shown);
+    }
+
+    fn insert(&mut self, panel: u32, top: Link) -> Outcome {
+        let Self { hierarchy, sight, from_outside, creases, .. } = self;
+        let eye = sight.eye;
+        let sides = hierarchy.panels.sides(panel);
+        let Panel { piece: id, halves, bounds, .. } = hierarchy.panels.panel(panel);
+        let piece = hierarchy.scene.piece(*id);
+        let Some(shown) = hierarchy.skeleton.shown_side(piece, eye) else { return Outcome::Done };
+        if hierarchy.is_inside(*id, shown, from_outside) {
+            return Outcome::Done;
+        }
+        sight.look_at(piece, sides, shown);
         sight.stats.inserted += 1;
-        let bounds = &hierarchy.bounds[id.index()];
         let seen = SeenBox::new(eye, bounds.low, bounds.high);
         let near = distance_to_box(eye, bounds);
-        let far = piece.points().fold(0.0, |far, p| f64::max(far, distance_bound(eye, p)));
-        let filler = Filler { piece: id, near, far };
-        let mut rivals = Rivals { hierarchy, eye, piece, shown, last: None, creases };
+        let corners = sides.iter().map(|side| hierarchy.scene.vertex(vertex(side.point)));
+        let far = corners.fold(0.0, |far, p| f64::max(far, distance_bound(eye, p)));
+        let filler = Filler { piece: *id, near, far };
+        let is_one = halves.is_none();
+        let mut rivals =
+            Rivals { hierarchy, eye, piece, sides, is_one, shown, last: None, creases, outcome: Outcome::Done };
         let Sight { contour, buffers: Buffers { work, polygon, .. }, .. } = sight;
         let judge = |directions: &mut Directions, knife: &mut Knife, old: PieceId, part: &[PolygonArc]| {
             rivals.judge(directions, knife, old, part)
         };
         contour.insert(&hierarchy.skeleton, top, polygon, &seen, &filler, judge, work);
+        let outcome = rivals.outcome;
+        if !is_one {
+            self.parts.extend(self.sight.buffers.work.filled.iter().map(|&leaf| (leaf, panel)));
+            self.tell_apart(shown);
+        }
+        outcome
     }
+
+    /// Cuts the leaves in which panels are seen along the edges between their pieces.
+    fn tell_apart(&mut self, shown: Side) {
+        let panels = &self.hierarchy.panels;
+        while let Some((leaf, panel)) = self.parts.pop() {
+            let Panel { piece, halves, .. } = panels.panel(panel);
+            let Some(halves) = halves else {
+                self.sight.contour.rename(leaf, *piece);
+                continue;
+            };
+            let half = self.sight.half_sphere(self.hierarchy.scene.piece(*piece), halves.seam, shown);
+            let Sight { contour, buffers: Buffers { work, circles, directions: numbers, .. }, skeleton, .. } =
+                &mut self.sight;
+            // Where the leaf reaches the panel's own boundary, the seam ends in a vertex of the scene.
+            let known = |directions: &mut Directions, cache: &mut ExactCache, arc: PolygonArc| {
+                let is_met = |line: LineId| circles.get(line.0) == Some(arc.along.circle().0);
+                let end = halves.ends.iter().find(|end| is_met(end.lines[0]) || is_met(end.lines[1]))?;
+                let make = || directions.push_point(skeleton, end.point, cache).0;
+                Some(DirectionId(numbers.of(end.point.0, make)))
+            };
+            let [first, second] = contour.cut_leaf(skeleton, leaf, half, known, work);
+            let [one, other] = halves.panels;
+            if let Some(leaf) = first {
+                self.parts.push((leaf, one));
+            }
+            if let Some(leaf) = second {
+                self.parts.push((leaf, other));
+            }
+        }
+    }
+}
+
+/// What became of a panel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    Done,
+    /// Each of its pieces is to be put in by itself too.
+    OneByOne,
 }
 
 /// A lower bound on the distance to a box.
@@ -158,16 +219,23 @@ enum Order {
     Behind,
     /// Each has parts before the other's plane and behind it.
     Mixed,
+    /// A panel in the plane of the other one: that differs from piece to piece.
+    InOnePlane,
 }
 
-/// A piece that is put in, against those that are there.
+/// A piece or panel that is put in, against the pieces that are there.
 struct Rivals<'a> {
     hierarchy: &'a Hierarchy,
     eye: DVec3,
+    /// It, or the first one of a panel.
     piece: PieceRef<'a>,
+    /// The boundary of all that is put in.
+    sides: &'a [FragmentSide],
+    is_one: bool,
     shown: Side,
     last: Option<(PieceId, Order)>,
     creases: &'a mut FxHashMap<[PlaneId; 2], CircleId>,
+    outcome: Outcome,
 }
 
 impl Rivals<'_> {
@@ -181,6 +249,10 @@ impl Rivals<'_> {
             Order::InFront => Verdict::InFront,
             Order::Behind => Verdict::Behind,
             Order::Mixed => self.judge_by_crease(directions, knife, old, part),
+            Order::InOnePlane => {
+                self.outcome = Outcome::OneByOne;
+                Verdict::Behind
+            }
         }
     }
 
@@ -190,10 +262,10 @@ impl Rivals<'_> {
         let old = self.hierarchy.scene.piece(old);
         let new = self.piece;
         // Whether a piece has corners before the plane of another one, and beyond it.
-        let about = |piece: PieceRef<'_>, other: PieceRef<'_>| {
+        let about = |corners: &mut dyn Iterator<Item = VertexId>, other: PieceRef<'_>| {
             let eye = self.height(other);
             let (mut before, mut beyond) = (false, false);
-            for &vertex in piece.vertices() {
+            for vertex in corners {
                 let side = skeleton.vertex_side(other.plane_id(), vertex) * eye;
                 before |= side.is_positive();
                 beyond |= side.is_negative();
@@ -201,10 +273,10 @@ impl Rivals<'_> {
             (before, beyond)
         };
         if new.plane_id() != old.plane_id() {
-            match about(new, old) {
+            match about(&mut self.sides.iter().map(|side| vertex(side.point)), old) {
                 (true, false) => return Order::InFront,
                 (false, true) => return Order::Behind,
-                (true, true) => match about(old, new) {
+                (true, true) => match about(&mut old.vertices().iter().copied(), new) {
                     (true, false) => return Order::Behind,
                     (false, true) => return Order::InFront,
                     // The old one in the plane of the new one puts that in its own.
@@ -212,6 +284,9 @@ impl Rivals<'_> {
                 },
                 (false, false) => {}
             }
+        }
+        if !self.is_one {
+            return Order::InOnePlane;
         }
         // In one plane: fronts hide backs, then the lower number hides the higher.
         let shown = if self.height(old) == Sign::Positive { old.facing() } else { old.facing().opposite() };
