@@ -176,6 +176,20 @@ impl ContourTree {
         Leaf { state: LeafState::Open, far: f64::INFINITY, start, len: boundary.len() as u32, parent }
     }
 
+    /// Gives a leaf another boundary within its own, in the same place if that is large enough.
+    fn narrow(&mut self, leaf: u32, boundary: &[PolygonArc], parent: Option<u32>) {
+        let Leaf { start, len, .. } = self.leaves[leaf as usize];
+        let start = if boundary.len() <= len as usize {
+            self.arcs[start as usize..][..boundary.len()].copy_from_slice(boundary);
+            start
+        } else {
+            self.arcs.extend_from_slice(boundary);
+            (self.arcs.len() - boundary.len()) as u32
+        };
+        let narrowed = &mut self.leaves[leaf as usize];
+        (narrowed.start, narrowed.len, narrowed.parent) = (start, boundary.len() as u32, parent);
+    }
+
     /// The boundary of a leaf.
     pub(crate) fn boundary(&self, leaf: u32) -> &[PolygonArc] {
         let leaf = &self.leaves[leaf as usize];
@@ -459,7 +473,7 @@ impl ContourTree {
             self.nodes.push(TreeNode { circle, negative, positive, parent, far });
             parent = Some(node);
         }
-        self.leaves[leaf as usize] = self.open_leaf(&work.arcs[polygon], parent);
+        self.narrow(leaf, &work.arcs[polygon], parent);
         self.close(leaf, LeafState::Filled(filler.piece), filler.far);
         work.filled.push(leaf);
     }

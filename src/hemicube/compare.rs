@@ -7,9 +7,8 @@ use super::rays::Rays;
 use super::view::Hemicube;
 use crate::bsp::SceneBsp;
 use crate::bvh::SceneBvh;
-use crate::contour::{ContourImage, Domain, ViewError, Viewpoint};
+use crate::contour::{Domain, SceneOrder, ViewError, ViewOptions, ViewSpace, Viewpoint};
 use crate::integral::Sums;
-use crate::scene::Scene;
 use glam::DVec3;
 use std::fmt;
 use std::hint::black_box;
@@ -238,24 +237,24 @@ impl Known {
 }
 
 /// A method with what it makes once for all views.
-enum Tool<'a> {
-    Contour(&'a SceneBsp),
-    ContourByBoxes(Box<SceneBvh>),
+enum Tool {
+    /// With the memory that its views use in turn.
+    Contour(SceneOrder, Box<ViewSpace>),
     Hemicube(Box<Hemicube>),
     Analytic(Box<Hemicube>),
     #[cfg(feature = "rays")]
     Rays(Box<Rays>, u32),
 }
 
-impl<'a> Tool<'a> {
+impl Tool {
     /// With the seconds that making it took.
-    fn timed(method: Method, bsp: &'a SceneBsp) -> Result<(Self, f64), BaselineError> {
+    fn timed(method: Method, bsp: &SceneBsp) -> Result<(Self, f64), BaselineError> {
         let scene = bsp.scene();
         let start = Instant::now();
         let tool = match method {
             // Made before.
-            Method::Contour => return Ok((Self::Contour(bsp), 0.0)),
-            Method::ContourByBoxes => Self::ContourByBoxes(Box::new(SceneBvh::build(scene))),
+            Method::Contour => return Ok((Self::Contour(bsp.clone().into(), Box::default()), 0.0)),
+            Method::ContourByBoxes => Self::Contour(SceneBvh::build(scene).into(), Box::default()),
             Method::Hemicube { resolution } => Self::Hemicube(Box::new(Hemicube::new(scene, resolution)?)),
             Method::Analytic { resolution } => Self::Analytic(Box::new(Hemicube::new(scene, resolution)?)),
             #[cfg(feature = "rays")]
@@ -275,8 +274,17 @@ impl<'a> Tool<'a> {
             wanted.clear();
         }
         match self {
-            Self::Contour(bsp) => image(view, bsp.scene(), wanted, || bsp.view(viewpoint, &domain)),
-            Self::ContourByBoxes(bvh) => image(view, bvh.scene(), wanted, || bvh.view(viewpoint, &domain)),
+            Self::Contour(order, space) => {
+                let start = Instant::now();
+                let image = order.view_in(space, viewpoint, &domain, &ViewOptions::default());
+                let image = image.map_err(|source| CompareError::Contour { view: number, source })?;
+                let sums = black_box(image.form_factors()).ok_or(CompareError::NoNormal { view: number })?;
+                let ms = since(start);
+                if let Some(factors) = wanted {
+                    dense(&sums, order.scene().polygon_count(), factors);
+                }
+                Ok((ms, image.cell_count()))
+            }
             Self::Hemicube(hemicube) => {
                 let start = Instant::now();
                 let seen = black_box(hemicube.view(viewpoint, normal).map_err(failed)?);
@@ -301,26 +309,6 @@ impl<'a> Tool<'a> {
             }
         }
     }
-}
-
-/// The same by a contour image. Taking the image apart again is part of its time.
-fn image(
-    view: &Known,
-    scene: &Scene,
-    wanted: Option<&mut Vec<f64>>,
-    see: impl Fn() -> Result<ContourImage, ViewError>,
-) -> Result<(f64, usize), CompareError> {
-    let number = view.number;
-    let start = Instant::now();
-    let image = see().map_err(|source| CompareError::Contour { view: number, source })?;
-    let sums = black_box(image.form_factors()).ok_or(CompareError::NoNormal { view: number })?;
-    let cells = image.cell_count();
-    drop(image);
-    let ms = since(start);
-    if let Some(factors) = wanted {
-        dense(&sums, scene.polygon_count(), factors);
-    }
-    Ok((ms, cells))
 }
 
 fn since(start: Instant) -> f64 {
