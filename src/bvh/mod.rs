@@ -31,7 +31,7 @@ pub(crate) enum Content {
     Pieces(Range<u32>),
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Hierarchy {
     pub(crate) scene: Scene,
     pub(crate) skeleton: Skeleton,

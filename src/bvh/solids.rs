@@ -19,7 +19,7 @@ const NONE: u32 = u32::MAX;
 const PAIRS: usize = 50;
 
 /// A closed and oriented component.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Component {
     bounds: Bounds,
     pieces: usize,
@@ -27,7 +27,7 @@ struct Component {
     inside: Option<Side>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Solids {
     components: Vec<Component>,
     /// The component that a piece is part of.
