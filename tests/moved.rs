@@ -71,6 +71,12 @@ fn an_object_leaves_the_vertices_that_it_shares_and_finds_them_again() {
     assert_eq!(corners(&apart, 1), [[1.0, 0.0, 1.0], [2.0, 0.0, 1.0], [2.0, 1.0, 1.0], [1.0, 1.0, 1.0]]);
     let together = apart.with_moved(&[(SECOND, by(0.0, 0.0, -1.0))]).expect("nothing breaks");
     assert_eq!((together.vertices().len(), together.edges().len()), (6, 7));
+    // -0 is +0, however it comes about.
+    let away = Faces::from(vec![vec![[0.0, -1.0, -1.0], [0.0, -2.0, -1.0], [0.0, -2.0, -2.0]]]);
+    let pair = objects(&[away.clone(), away.mapped(|p| p.abs())], Repair::default());
+    let mirror = DAffine3 { translation: -DVec3::ZERO, ..DAffine3::from_scale(DVec3::NEG_ONE) };
+    let onto = pair.with_moved(&[(FIRST, mirror)]).expect("nothing breaks");
+    assert_eq!((pair.vertices().len(), onto.vertices().len()), (6, 3));
     // Both by one transform stay together.
     let both = scene.with_moved(&[(FIRST, by(0.5, 0.25, 0.0)), (SECOND, by(0.5, 0.25, 0.0))]).expect("nothing breaks");
     assert_eq!((both.vertices().len(), both.edges().len()), (6, 7));
@@ -112,7 +118,6 @@ fn a_turned_quad_may_fold_and_a_sheared_one_unfold() {
 
 #[test]
 fn what_has_no_area_hides_nothing_until_it_has_some() {
-    // Decimals on a line, but for rounding: turned, they are no longer.
     let scene = objects(&[square(2.0), cuboid([0.0; 3], [1.0; 3])], Repair::default());
     let bvh = SceneBvh::build(&scene);
     assert_eq!(bvh.solid_pieces(), 6);
@@ -131,6 +136,12 @@ fn what_has_no_area_hides_nothing_until_it_has_some() {
     let turn = DAffine3::from_axis_angle(DVec3::new(0.6, 0.0, 0.8), 0.3);
     let seen = alone.moved(&[(FIRST, turn)]).expect("nothing breaks");
     assert_eq!((seen.node_count(), seen.scene().piece_count()), (1, 1), "rounding gives it area");
+    let line = Faces::from(vec![vec![[0.0; 3], [0.1, 0.1, 0.1], [0.3, 0.3, 0.3]]]);
+    let before_another = SceneBvh::build(&objects(&[line, square(2.0)], Repair::default()));
+    let both = before_another.moved(&[(FIRST, turn)]).expect("nothing breaks");
+    assert_eq!(both.scene().piece_count(), 2);
+    let image = both.view(&Viewpoint::free(DVec3::new(0.0, 0.5, -1.0)), &Domain::Sphere).expect("the eye is finite");
+    check_image(&image).expect("both are seen");
     let gone = seen.moved(&[(FIRST, DAffine3::from_scale(DVec3::ZERO))]).expect("nothing breaks");
     assert_eq!((gone.node_count(), gone.scene().piece_count(), gone.looseness().to_string()), (0, 0, "1".to_owned()));
     let image = gone.view(&Viewpoint::free(DVec3::ONE), &Domain::Sphere).expect("the eye is finite");
@@ -143,7 +154,9 @@ fn solids_are_proved_where_something_moved_and_nowhere_else_lost() {
     let whole = cuboid([0.0; 3], [1.0; 3]);
     let [cup, lid] = [whole.loops()[1..].to_vec(), whole.loops()[..1].to_vec()].map(|loops| {
         let mut faces = Faces::default();
-        loops.iter().for_each(|corners| drop(faces.push(corners)));
+        for corners in loops {
+            faces.push(&corners);
+        }
         faces
     });
     let scene = objects(&[cup, lid, cuboid([3.0; 3], [4.0; 3])], Repair::default());
@@ -157,10 +170,39 @@ fn solids_are_proved_where_something_moved_and_nowhere_else_lost() {
     assert!(image.cells().any(|cell| cell.polygon() == Some(PolygonId(0))), "one sees into the open cube");
     let closed = open.moved(&[(SECOND, by(0.0, 0.0, 1.0))]).expect("nothing breaks");
     assert_eq!(closed.solid_pieces(), 12);
-    // A corner pushed through the opposite side.
-    let shear = DAffine3::from_mat3(DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(0.0, 0.0, -1.0)));
-    assert_eq!(closed.moved(&[(SECOND, shear)]).expect("nothing breaks").solid_pieces(), 12, "at z = 0 nothing moves");
-    assert_eq!(closed.moved(&[(FIRST, shear)]).expect("nothing breaks").solid_pieces(), 6, "fronts against a front");
+    // At z = 0 a mirror moves no corner of the lid, but what was its outside is above it now.
+    let mirror = DAffine3::from_scale(DVec3::new(1.0, 1.0, -1.0));
+    assert_eq!(closed.moved(&[(SECOND, mirror)]).expect("nothing breaks").solid_pieces(), 6);
+    assert_eq!(closed.moved(&[(FIRST, mirror), (SECOND, mirror)]).expect("nothing breaks").solid_pieces(), 12);
+}
+
+/// A long box with two pointed roofs, the first of which is an object of its own that leans towards the other.
+#[test]
+fn a_solid_that_comes_to_pass_through_itself_is_none() {
+    let quad = |faces: &mut Faces, corners: [[i8; 3]; 4]| {
+        faces.push(&corners.map(|p| DVec3::from(p.map(f64::from))));
+    };
+    let [mut body, mut roof] = [Faces::default(), Faces::default()];
+    for i in 0..3 {
+        quad(&mut body, [[i, 0, -1], [i, 1, -1], [i + 1, 1, -1], [i + 1, 0, -1]]);
+        quad(&mut body, [[i, 0, -1], [i + 1, 0, -1], [i + 1, 0, 0], [i, 0, 0]]);
+        quad(&mut body, [[i, 1, -1], [i, 1, 0], [i + 1, 1, 0], [i + 1, 1, -1]]);
+    }
+    quad(&mut body, [[0, 0, -1], [0, 0, 0], [0, 1, 0], [0, 1, -1]]);
+    quad(&mut body, [[3, 0, -1], [3, 1, -1], [3, 1, 0], [3, 0, 0]]);
+    quad(&mut body, [[1, 0, 0], [2, 0, 0], [2, 1, 0], [1, 1, 0]]);
+    for (faces, x) in [(&mut roof, 0.0), (&mut body, 2.0)] {
+        let around = [[x, 0.0], [x + 1.0, 0.0], [x + 1.0, 1.0], [x, 1.0]].map(|[x, y]| DVec3::new(x, y, 0.0));
+        for k in 0..4 {
+            faces.push(&[around[k], around[(k + 1) % 4], DVec3::new(x + 0.5, 0.5, 1.0)]);
+        }
+    }
+    let bvh = SceneBvh::build(&objects(&[body, roof], Repair::default()));
+    let leaning = |by: f64| {
+        let shear = DAffine3::from_mat3(DMat3::from_cols(DVec3::X, DVec3::Y, DVec3::new(by, 0.0, 1.0)));
+        bvh.moved(&[(SECOND, shear)]).expect("nothing breaks").solid_pieces()
+    };
+    assert_eq!([0.0, 1.0, 2.5].map(leaning), [20, 20, 0]);
 }
 
 #[test]
