@@ -128,7 +128,9 @@ mod tests {
             for node in &nodes {
                 let inside = match &node.content {
                     Content::Boxes(within) => {
-                        within.iter().for_each(|&k| seen[k as usize] += 1);
+                        for &k in within {
+                            seen[k as usize] += 1;
+                        }
                         within.map(|k| nodes[k as usize].bounds).to_vec()
                     }
                     Content::Pieces(range) => {

@@ -30,6 +30,19 @@ impl Assembly {
         Self { data: Data { vertices, ..Data::default() }, ..Self::default() }
     }
 
+    /// The same with room for as much as there is in another scene.
+    pub(super) fn with_room_for(vertices: Vec<DVec3>, other: &Data) -> Self {
+        let mut assembly = Self::new(vertices);
+        let data = &mut assembly.data;
+        data.edges.reserve(other.edges.len());
+        data.planes.reserve(other.planes.len());
+        data.polygons.reserve(other.polygons.len());
+        data.pieces.reserve(other.pieces.len());
+        data.piece_vertices.reserve(other.piece_vertices.len());
+        data.piece_edges.reserve(other.piece_edges.len());
+        assembly
+    }
+
     /// Adds the next polygon with its facets.
     pub(super) fn add_polygon(
         &mut self,

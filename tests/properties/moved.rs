@@ -36,7 +36,9 @@ fn corners_after(polygon: PolygonRef<'_>, scene: &Scene, moves: &Moves) -> Vec<V
     let rings = polygon.rings().iter().map(|ring| {
         let mut corners: Vec<DVec3> = ring.iter().map(|&v| scene.vertex(v)).collect();
         let Some(transform) = transform else { return corners };
-        corners.iter_mut().for_each(|p| *p = transform.transform_point3(*p));
+        for p in &mut corners {
+            *p = transform.transform_point3(*p);
+        }
         corners.dedup();
         while corners.len() > 1 && corners.first() == corners.last() {
             corners.pop();

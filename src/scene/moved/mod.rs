@@ -172,11 +172,15 @@ impl<'a> Replay<'a> {
     fn new(old: &'a Data, mut places: Places) -> Self {
         Self {
             old,
-            assembly: Assembly::new(std::mem::take(&mut places.positions)),
+            assembly: Assembly::with_room_for(std::mem::take(&mut places.positions), old),
             places,
             edges: vec![None; old.edges.len()],
             planes: vec![None; old.planes.len()],
-            carried: Carried::default(),
+            carried: Carried {
+                edges: vec![None; old.edges.len()],
+                planes: vec![None; old.planes.len()],
+                pieces: vec![None; old.pieces.len()],
+            },
         }
     }
 
