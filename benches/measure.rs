@@ -1,15 +1,17 @@
 //! The tables of docs/performance.md: `cargo bench --bench measure`, or for one scene
 //! `cargo bench --bench measure -- room 50000 [quadtree depth]`; `floor` for a depth looks from points on
 //! the floor instead of points in the air. Every scene has two rows: seen by its 3D BSP, and by a hierarchy of boxes;
-//! `bsp` or `boxes` for a depth leaves the other one out. `cargo bench --bench measure -- regions` is the table of visible regions.
+//! `bsp` or `boxes` for a depth leaves the other one out. `cargo bench --bench measure -- regions` is the table of visible regions,
+//! `cargo bench --bench measure -- moved` that of objects that move.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
 use nusselt::contour::{
     ContourImage, Domain, Projection, Projector, ViewError, ViewOptions, ViewSpace, Viewpoint, VisibleRegion,
 };
 use nusselt::samples::{Kind, generate};
+use nusselt::scene::ObjectId;
 use std::error::Error;
 use std::time::Instant;
 
@@ -20,6 +22,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<String> = std::env::args().skip(1).filter(|word| word != "--bench").collect();
     if words == ["regions"] {
         return regions();
+    }
+    if words == ["moved"] {
+        return moved();
     }
     println!(
         "| scene | polygons | way | build s | view ms | worst | factors ms | cells | visible | inserted | skipped | nodes | filter undecided | integers | worst sum |"
@@ -150,6 +155,75 @@ fn regions() -> Result<(), Box<dyn Error>> {
             let [cells, regions, loops, sides, points] = counts.map(|sum| sum / views);
             println!(
                 "| {kind} | {polygons} | {cells} | {view:.2} | {merge:.2} | {regions} | {loops} | {sides} | {draw:.2} | {points} |"
+            );
+        }
+    }
+    Ok(())
+}
+
+/// What it takes to move objects, against building anew, and what views of either take.
+fn moved() -> Result<(), Box<dyn Error>> {
+    println!(
+        "| scene | moves | polygons | scene ms | its boxes ms | with_moved ms | moved ms | anew / moved | looseness | view ms | view anew ms |"
+    );
+    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    for kind in Kind::ALL {
+        let mesh = generate(kind, 50_000, 1)?;
+        let scene = mesh.to_builder().build()?;
+        let built = SceneBvh::build(&scene);
+        let (low, high) = scene.bounds().ok_or("the scene has polygons")?;
+        // The first object is the shell.
+        let objects: Vec<ObjectId> = (1..scene.objects().len() as u32).map(ObjectId).collect();
+        let step = DAffine3::from_translation(DVec3::new(0.25, 0.125, 0.0));
+        // Mirrored in the middle, but for the sides: objects change places and stay inside.
+        let turned = DAffine3::from_translation((low + high) * DVec3::new(1.0, 1.0, 0.0))
+            * DAffine3::from_scale(DVec3::new(-1.0, -1.0, 1.0));
+        let some = |every: usize, transform: DAffine3| -> Vec<_> {
+            objects.iter().step_by(every).map(|&object| (object, transform)).collect()
+        };
+        for (name, moves) in [
+            ("one by 0.3 m", some(objects.len(), step)),
+            ("one across", some(objects.len(), turned)),
+            ("a tenth across", some(10, turned)),
+            ("half across", some(2, turned)),
+            ("half by 0.3 m", some(2, step)),
+        ] {
+            let moving: Vec<ObjectId> = moves.iter().map(|(object, _)| *object).collect();
+            let polygons = scene.polygons().filter(|polygon| moving.contains(&polygon.object())).count();
+            let builder = mesh.to_builder();
+            let mut times = [f64::INFINITY; 4];
+            let mut note = |k: usize, start: Instant| times[k] = times[k].min(start.elapsed().as_secs_f64() * 1e3);
+            let (mut after, mut anew) = (built.clone(), built.clone());
+            for _ in 0..5 {
+                let builder = builder.clone();
+                let start = Instant::now();
+                let _ = builder.build()?;
+                note(0, start);
+                let start = Instant::now();
+                let _ = scene.with_moved(&moves)?;
+                note(2, start);
+                let start = Instant::now();
+                after = built.moved(&moves)?;
+                note(3, start);
+                let start = Instant::now();
+                anew = SceneBvh::build(after.scene());
+                note(1, start);
+            }
+            let [build, boxes, with_moved, moved] = times;
+            let mut views = [0.0; 2];
+            for point in mesh.free_points(VIEWS, 3) {
+                for (sum, bvh) in views.iter_mut().zip([&after, &anew]) {
+                    let start = Instant::now();
+                    bvh.view(&Viewpoint::free(DVec3::from(point)), &Domain::Hemisphere(DVec3::Z))?;
+                    *sum += start.elapsed().as_secs_f64() * 1e3 / VIEWS as f64;
+                }
+            }
+            println!(
+                "| {kind} | {name} | {polygons} | {build:.1} | {boxes:.1} | {with_moved:.1} | {moved:.1} | {:.1} | {:.2} | {:.2} | {:.2} |",
+                (build + boxes) / moved,
+                after.looseness(),
+                views[0],
+                views[1]
             );
         }
     }

@@ -90,7 +90,7 @@ impl SceneBsp {
 
 fn whole_pieces(scene: &Scene, skeleton: &Skeleton) -> Vec<Item> {
     let items = scene.pieces().map(|piece| {
-        let sides = whole_piece(scene, piece.id());
+        let sides: Vec<_> = whole_piece(scene, piece.id()).collect();
         let bounds = bounds_of(skeleton, &sides);
         Item { piece: piece.id(), polygon: piece.polygon(), own: piece.plane_id(), sides, bounds }
     });

@@ -122,7 +122,9 @@ impl Collinear {
 fn edges_around(vertices: usize, edges: &[[VertexId; 2]], is_new: impl Fn(u32) -> bool) -> Vec<Vec<u32>> {
     let mut has_new = vec![false; vertices];
     for (_, edge) in (0..).zip(edges).filter(|&(k, _)| is_new(k)) {
-        edge.iter().for_each(|end| has_new[end.index()] = true);
+        for end in edge {
+            has_new[end.index()] = true;
+        }
     }
     let mut around = vec![Vec::new(); vertices];
     for (k, edge) in (0..).zip(edges) {

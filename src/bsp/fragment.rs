@@ -118,17 +118,15 @@ impl<'a> FragmentRef<'a> {
 }
 
 /// The whole piece as a fragment's boundary.
-pub(crate) fn whole_piece(scene: &Scene, piece: PieceId) -> Vec<FragmentSide> {
+pub(crate) fn whole_piece(scene: &Scene, piece: PieceId) -> impl ExactSizeIterator<Item = FragmentSide> {
     let piece = scene.piece(piece);
     let edges = scene.edges();
     let sides = piece.vertices().iter().zip(piece.edges());
-    sides
-        .map(|(vertex, edge)| FragmentSide {
-            point: PointId(vertex.0),
-            line: LineId(edge.0),
-            forward: edges[edge.index()][0] == *vertex,
-        })
-        .collect()
+    sides.map(|(vertex, edge)| FragmentSide {
+        point: PointId(vertex.0),
+        line: LineId(edge.0),
+        forward: edges[edge.index()][0] == *vertex,
+    })
 }
 
 /// The box around a boundary.

@@ -34,7 +34,7 @@ pub(crate) enum Content {
     Panels(Range<u32>),
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Hierarchy {
     pub(crate) scene: Scene,
     pub(crate) skeleton: Skeleton,

@@ -116,3 +116,53 @@ pub(super) fn cost(panels: &Panels, nodes: &[BvhNode], order: &[u32], piece_coun
     let own = (0..piece_count as u32).map(|piece| panels.panel(piece).bounds.half_area(unit));
     weighed.sum::<f64>() / own.sum::<f64>()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::build::boxes;
+    use super::*;
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    fn unit_box(x: f64) -> Bounds {
+        Bounds { low: DVec3::new(x, 0.0, 0.0), high: DVec3::new(x + 1.0, 1.0, 1.0) }
+    }
+
+    proptest! {
+        #[test]
+        fn every_piece_is_in_one_tight_box_whatever_is_left(
+            counts in prop::collection::vec(0u32..4, 1..40), shuffle in any::<u64>(),
+        ) {
+            let place = |k: usize| ((k as u64).wrapping_mul(shuffle | 1) % 101) as f64;
+            let before: Vec<_> = (0..counts.len()).map(|k| unit_box(place(k))).collect();
+            let (nodes, order) = boxes(&before);
+            let mut next = 0;
+            let places: Vec<_> = counts.iter().map(|&n| { next += n; next - n..next }).collect();
+            let bounds: Vec<_> = (0..next as usize).map(|k| unit_box(place(k + 7))).collect();
+            let (nodes, order) = refit(&nodes, &order, &places, &bounds);
+            let mut sorted = order.clone();
+            sorted.sort_unstable();
+            prop_assert_eq!(sorted, (0..next).map(PieceId).collect::<Vec<_>>());
+            let mut seen = vec![0; nodes.len()];
+            let mut held = 0;
+            for node in &nodes {
+                let inside = match &node.content {
+                    Content::Boxes(within) => {
+                        for &k in within {
+                            seen[k as usize] += 1;
+                        }
+                        within.map(|k| nodes[k as usize].bounds).to_vec()
+                    }
+                    Content::Pieces(range) => {
+                        prop_assert!(!range.is_empty());
+                        held += range.len();
+                        order[range.start as usize..range.end as usize].iter().map(|p| bounds[p.index()]).collect()
+                    }
+                };
+                prop_assert_eq!(node.bounds, inside.into_iter().fold(Bounds::EMPTY, Bounds::union));
+            }
+            prop_assert_eq!(held, bounds.len());
+            prop_assert!(seen.iter().skip(1).all(|&n| n == 1) && seen.first().is_none_or(|&n| n == 0));
+        }
+    }
+}

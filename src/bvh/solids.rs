@@ -19,7 +19,7 @@ const NONE: u32 = u32::MAX;
 const PAIRS: usize = 50;
 
 /// A closed and oriented component.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 struct Component {
     bounds: Bounds,
     pieces: usize,
@@ -27,7 +27,7 @@ struct Component {
     inside: Option<Side>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Solids {
     components: Vec<Component>,
     /// The component that a piece is part of.
@@ -66,13 +66,16 @@ impl Solids {
         found
     }
 
-    /// The component that was made of exactly these pieces.
+    /// The component that was made of exactly these pieces, which are one now.
+    ///
+    /// If none of them has moved and one was part of a component, that was these: each edge had the two pieces that it has now, and as it
+    /// was closed, no more.
     fn known(&self, pieces: &[PieceId], before: &[Option<PieceId>]) -> Option<&Component> {
-        let component_before = |piece: &PieceId| before[piece.index()].map(|piece| self.component_of[piece.index()]);
-        let number = component_before(pieces.first()?)?;
-        let component = self.components.get(number as usize)?;
-        let is_whole = component.pieces == pieces.len();
-        (is_whole && pieces.iter().all(|piece| component_before(piece) == Some(number))).then_some(component)
+        if pieces.iter().any(|piece| before[piece.index()].is_none()) {
+            return None;
+        }
+        let first = before[pieces.first()?.index()]?;
+        self.components.get(self.component_of[first.index()] as usize)
     }
 
     pub(super) fn piece_count(&self) -> usize {

@@ -6,6 +6,7 @@ use super::{Axis, Data, EdgeId, MaterialId, ObjectId, Piece, PlaneId, Polygon, P
 use super::{SupportingPlane, VertexId};
 use glam::DVec3;
 use std::collections::HashMap;
+use std::sync::Arc;
 
 /// As many of anything as a 32-bit id can name.
 pub(super) const LIMIT: usize = u32::MAX as usize;
@@ -29,6 +30,19 @@ impl Assembly {
         Self { data: Data { vertices, ..Data::default() }, ..Self::default() }
     }
 
+    /// The same with room for as much as there is in another scene.
+    pub(super) fn with_room_for(vertices: Vec<DVec3>, other: &Data) -> Self {
+        let mut assembly = Self::new(vertices);
+        let data = &mut assembly.data;
+        data.edges.reserve(other.edges.len());
+        data.planes.reserve(other.planes.len());
+        data.polygons.reserve(other.polygons.len());
+        data.pieces.reserve(other.pieces.len());
+        data.piece_vertices.reserve(other.piece_vertices.len());
+        data.piece_edges.reserve(other.piece_edges.len());
+        assembly
+    }
+
     /// Adds the next polygon with its facets.
     pub(super) fn add_polygon(
         &mut self,
@@ -49,7 +63,7 @@ impl Assembly {
             self.add_piece(polygon, plane, facing, &ring)?;
         }
         let pieces = first..self.data.pieces.len() as u32;
-        self.data.polygons.push(Polygon { object, material, shape, rings, pieces });
+        self.data.polygons.push(Polygon { object, material, shape, rings: rings.into(), pieces });
         Ok(())
     }
 
@@ -119,7 +133,7 @@ impl Data {
     /// Leaves out the vertices that no polygon names, and numbers the others anew, in the same order.
     pub(super) fn leave_out_unused_vertices(&mut self) {
         let mut used = vec![false; self.vertices.len()];
-        for vertex in self.polygons.iter().flat_map(|polygon| &polygon.rings).flatten() {
+        for vertex in self.polygons.iter().flat_map(|polygon| &*polygon.rings).flatten() {
             used[vertex.index()] = true;
         }
         let mut ids = Vec::with_capacity(used.len());
@@ -132,7 +146,7 @@ impl Data {
             }
         }
         self.vertices = kept;
-        let rings = self.polygons.iter_mut().flat_map(|polygon| &mut polygon.rings).flatten();
+        let rings = self.polygons.iter_mut().flat_map(|polygon| Arc::make_mut(&mut polygon.rings)).flatten();
         let planes = self.planes.iter_mut().filter_map(|plane| match plane {
             SupportingPlane::Points(points) => Some(points),
             SupportingPlane::Axis { .. } => None,

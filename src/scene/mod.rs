@@ -172,8 +172,8 @@ struct Polygon {
     object: ObjectId,
     material: MaterialId,
     shape: Shape,
-    /// Outer ring first, then holes, as vertex ids; consecutive duplicates removed.
-    rings: Vec<Vec<VertexId>>,
+    /// Outer ring first, then holes, as vertex ids; consecutive duplicates removed. Shared with scenes in which it is the same.
+    rings: Arc<[Vec<VertexId>]>,
     pieces: Range<u32>,
 }
 

@@ -4,6 +4,7 @@
 
 mod bsp;
 mod laws;
+mod moved;
 mod proof;
 mod regions;
 mod tiling;

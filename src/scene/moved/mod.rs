@@ -172,11 +172,15 @@ impl<'a> Replay<'a> {
     fn new(old: &'a Data, mut places: Places) -> Self {
         Self {
             old,
-            assembly: Assembly::new(std::mem::take(&mut places.positions)),
+            assembly: Assembly::with_room_for(std::mem::take(&mut places.positions), old),
             places,
             edges: vec![None; old.edges.len()],
             planes: vec![None; old.planes.len()],
-            carried: Carried::default(),
+            carried: Carried {
+                edges: vec![None; old.edges.len()],
+                planes: vec![None; old.planes.len()],
+                pieces: vec![None; old.pieces.len()],
+            },
         }
     }
 
@@ -244,7 +248,8 @@ impl<'a> Replay<'a> {
 
     /// Adds a polygon that stays as it is.
     fn carry(&mut self, id: PolygonId, polygon: &Polygon, judge: &mut Judge<'_>) -> Result<(), Broken> {
-        let rings = self.rings(polygon, None);
+        let is_same = polygon.rings.iter().flatten().all(|&v| self.places.stays(v) == v);
+        let rings = if is_same { Arc::clone(&polygon.rings) } else { self.rings(polygon, None).into() };
         // Only what has come to it may be the same.
         if self.old.repair.duplicates != DuplicatePolicy::Keep
             && !polygon.pieces.is_empty()

@@ -42,7 +42,11 @@ impl Places {
             let vertices = polygon.rings.iter().flatten();
             match moves.of(polygon) {
                 Some(number) => riders.extend(vertices.map(|&v| (v, number))),
-                None => vertices.for_each(|v| stays[v.index()] = true),
+                None => {
+                    for vertex in vertices {
+                        stays[vertex.index()] = true;
+                    }
+                }
             }
         }
         riders.sort_unstable();
@@ -71,10 +75,15 @@ impl Places {
             }
         }
 
-        let mut places = Self::default();
+        let count = old.vertices.len();
+        let mut places = Self {
+            positions: Vec::with_capacity(count + riders.len()),
+            staying: Vec::with_capacity(count),
+            ..Self::default()
+        };
         let mut next = 0;
         for (k, &position) in old.vertices.iter().enumerate() {
-            places.staying.push(stays[k].then(|| places.positions.len()).map(|id| VertexId(id as u32)));
+            places.staying.push(stays[k].then_some(VertexId(places.positions.len() as u32)));
             if stays[k] {
                 places.positions.push(position);
             }
