@@ -10,8 +10,8 @@ mod panels;
 mod refit;
 mod solids;
 
-use crate::bsp::{Bounds, Skeleton, bounds_of, whole_piece};
-use crate::scene::{PieceId, PieceRef, Scene, Side};
+use crate::bsp::{Bounds, PointId, Skeleton};
+use crate::scene::{PieceId, PieceRef, Scene, Side, VertexId};
 use glam::DVec3;
 use panels::Panels;
 pub(crate) use panels::{Panel, vertex};
@@ -62,13 +62,7 @@ impl SceneBvh {
         let skeleton = Skeleton::new(scene);
         let bounds = bounds_of_pieces(scene, &skeleton);
         let solids = Solids::of(scene, &skeleton, &bounds);
-        let pieces: Vec<PieceId> = scene.pieces().map(PieceRef::id).collect();
-        let (panels, roots) = Panels::of(scene, &skeleton, &[&pieces], |a, b| solids.are_hidden_together(a, b));
-        let roots = roots.into_iter().flatten().collect();
-        let (nodes, order) = build::boxes(roots, |panel| panels.panel(panel).bounds);
-        let built_cost = refit::cost(&panels, &nodes, &order, scene.piece_count());
-        let hierarchy = Hierarchy { scene: scene.clone(), skeleton, nodes, panels, order, solids, built_cost };
-        Self { hierarchy: Arc::new(hierarchy) }
+        Self { hierarchy: Arc::new(Hierarchy::new(scene.clone(), skeleton, solids)) }
     }
 
     /// The scene it was built for.
@@ -90,10 +84,21 @@ impl SceneBvh {
 
 /// The boxes around all pieces.
 fn bounds_of_pieces(scene: &Scene, skeleton: &Skeleton) -> Vec<Bounds> {
-    scene.pieces().map(|piece| bounds_of(skeleton, &whole_piece(scene, piece.id()))).collect()
+    let vertex = |&vertex: &VertexId| skeleton.approx_point(PointId(vertex.0));
+    scene.pieces().map(|piece| Bounds::around(piece.vertices().iter().map(vertex))).collect()
 }
 
 impl Hierarchy {
+    /// Panels and boxes for all pieces.
+    fn new(scene: Scene, skeleton: Skeleton, solids: Solids) -> Self {
+        let pieces: Vec<PieceId> = scene.pieces().map(PieceRef::id).collect();
+        let (panels, roots) = Panels::of(&scene, &skeleton, &[&pieces], |a, b| solids.are_hidden_together(a, b));
+        let roots = roots.into_iter().flatten().collect();
+        let (nodes, order) = build::boxes(roots, |panel| panels.panel(panel).bounds);
+        let built_cost = refit::cost(&panels, &nodes, &order, scene.piece_count());
+        Self { scene, skeleton, nodes, panels, order, solids, built_cost }
+    }
+
     /// For each solid, whether the eye is certainly outside of it.
     pub(crate) fn solids_seen_from_outside(&self, eye: DVec3) -> Vec<bool> {
         self.solids.seen_from_outside(eye)

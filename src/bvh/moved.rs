@@ -44,10 +44,11 @@ impl SceneBvh {
         let bounds = bounds_of_pieces(&scene, &skeleton);
         let solids = old.solids.moved(&scene, &skeleton, &bounds, &carried.pieces);
         let places = refit::places(&old.scene, &scene);
-        let (mut nodes, groups) = refit::refit(&old.nodes, &old.order, &old.panels, &places);
+        let (mut nodes, groups) =
+            refit::refit(&old.nodes, &old.order, |panel, found| old.panels.pieces(panel, found), &places);
         let groups: Vec<&[PieceId]> = groups.iter().map(Vec::as_slice).collect();
         let (panels, groups) = Panels::of(&scene, &skeleton, &groups, |a, b| solids.are_hidden_together(a, b));
-        let order = refit::fit(&mut nodes, &groups, &panels);
+        let order = refit::fit(&mut nodes, &groups, |panel| panels.panel(panel).bounds);
         let hierarchy = Hierarchy { scene, skeleton, nodes, panels, order, solids, built_cost: old.built_cost };
         Ok(Self { hierarchy: Arc::new(hierarchy) })
     }
@@ -62,12 +63,10 @@ impl SceneBvh {
         if ratio.is_finite() { ratio } else { 1.0 }
     }
 
-    /// The same hierarchy with the boxes built anew: much faster than [`SceneBvh::build`], as all else is known.
+    /// The same hierarchy with the boxes, and the panels in them, built anew: faster than [`SceneBvh::build`], as all else is known.
     #[must_use]
     pub fn tightened(self) -> Self {
-        let mut hierarchy = Arc::unwrap_or_clone(self.hierarchy);
-        (hierarchy.nodes, hierarchy.order) = build::boxes(&hierarchy.bounds);
-        hierarchy.built_cost = refit::cost(&hierarchy.nodes, &hierarchy.bounds);
-        Self { hierarchy: Arc::new(hierarchy) }
+        let Hierarchy { scene, skeleton, solids, .. } = Arc::unwrap_or_clone(self.hierarchy);
+        Self { hierarchy: Arc::new(Hierarchy::new(scene, skeleton, solids)) }
     }
 }

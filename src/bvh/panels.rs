@@ -67,7 +67,7 @@ impl Halves {
 }
 
 /// All panels: those of one piece first, under the numbers of their pieces.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Panels {
     panels: Vec<Panel>,
     /// Of the lines that are known to be the same it is always the one that stands for them.
@@ -84,7 +84,7 @@ impl Panels {
     ) -> (Self, Vec<Vec<u32>>) {
         let mut panels = Self { panels: Vec::with_capacity(scene.piece_count()), sides: Vec::new() };
         for piece in scene.pieces() {
-            let sides = whole_piece(scene, piece.id()).into_iter().map(|side| {
+            let sides = whole_piece(scene, piece.id()).map(|side| {
                 let (line, same_way) = skeleton.representative(side.line);
                 FragmentSide { line, forward: side.forward == same_way, ..side }
             });
@@ -272,4 +272,159 @@ pub(crate) fn vertex(point: PointId) -> VertexId {
 
 fn next(k: usize, sides: &[FragmentSide]) -> usize {
     if k + 1 == sides.len() { 0 } else { k + 1 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::SceneBvh;
+    use crate::exact::orient3d;
+    use crate::scene::{Material, Scene};
+    use glam::DVec3;
+
+    type Mesh = (Vec<[f64; 3]>, Vec<Vec<usize>>);
+
+    /// A wall of tiles, by their corners' columns and rows.
+    fn wall(columns: usize, rows: usize, corner: impl Fn(f64, f64) -> [f64; 3]) -> Mesh {
+        let place = |k: usize| corner((k % (columns + 1)) as f64, (k / (columns + 1)) as f64);
+        let tile = |k: usize| {
+            let low = k / columns * (columns + 1) + k % columns;
+            vec![low, low + 1, low + columns + 2, low + columns + 1]
+        };
+        ((0..(columns + 1) * (rows + 1)).map(place).collect(), (0..columns * rows).map(tile).collect())
+    }
+
+    fn flat(x: f64, y: f64) -> [f64; 3] {
+        [x, y, 2.0]
+    }
+
+    /// How many pieces the panels of a mesh have, most first.
+    fn sizes((vertices, faces): &Mesh) -> Vec<u32> {
+        let scene = Scene::builder().mesh(vertices, faces, Material::new("grey")).build().expect("a scene");
+        let bvh = SceneBvh::build(&scene);
+        check(&bvh);
+        let hierarchy = &bvh.hierarchy;
+        let mut sizes: Vec<u32> = hierarchy.order.iter().map(|&panel| hierarchy.panels.panel(panel).pieces).collect();
+        sizes.sort_unstable_by(|a, b| b.cmp(a));
+        sizes
+    }
+
+    /// Every piece is in one panel; every panel is convex, and its halves are beside each other along its seam.
+    fn check(bvh: &SceneBvh) {
+        let (scene, panels) = (bvh.scene(), &bvh.hierarchy.panels);
+        let mut all = Vec::new();
+        let mut rest = bvh.hierarchy.order.clone();
+        rest.iter().for_each(|&panel| panels.pieces(panel, &mut all));
+        all.sort_unstable();
+        assert!(all.into_iter().eq(scene.pieces().map(|piece| piece.id())));
+        while let Some(panel) = rest.pop() {
+            let corners = |panel: u32| panels.sides(panel).iter().map(|s| scene.vertex(super::vertex(s.point)));
+            let normal = bvh.hierarchy.skeleton.approx_normal(scene.piece(panels.panel(panel).piece).plane_id()).v;
+            let ring: Vec<DVec3> = corners(panel).collect();
+            let turn = |p: DVec3, q: DVec3, r: DVec3| orient3d(p, q, p + normal * 8.0, r);
+            let turns = (0..ring.len()).map(|k| turn(ring[k], ring[(k + 1) % ring.len()], ring[(k + 2) % ring.len()]));
+            let way = turns.clone().find(|turn| !turn.is_zero()).expect("not flat");
+            assert!(turns.clone().all(|turn| turn.is_zero() || turn == way), "{ring:?}");
+            let Some(halves) = panels.panel(panel).halves else { continue };
+            let [u, v] = halves.ends.map(|end| scene.vertex(super::vertex(end.point)));
+            for (half, side) in halves.panels.into_iter().zip([way, -way]) {
+                assert!(corners(half).all(|p| turn(u, v, p).is_zero() || turn(u, v, p) == side));
+                assert!(corners(half).any(|p| p == u) && corners(half).any(|p| p == v));
+            }
+            rest.extend(halves.panels);
+        }
+    }
+
+    #[test]
+    fn tiles_of_a_wall_become_panels() {
+        assert_eq!(sizes(&wall(4, 4, flat)), [16]);
+        assert_eq!(sizes(&wall(1, 1, flat)), [1]);
+        assert_eq!(sizes(&wall(3, 5, flat)), [15]);
+        // Of 12 x 12 tiles no panel has more than 64, and there are few of them.
+        let large = sizes(&wall(12, 12, flat));
+        assert!(large.iter().sum::<u32>() == 144 && large[0] <= 64 && large.len() <= 6, "{large:?}");
+        // Slanted, exactly in one plane; its tiles are planes of their own.
+        assert_eq!(sizes(&wall(4, 4, |x, y| [x, y, 2.0 * x + 3.0 * y])), [16]);
+    }
+
+    #[test]
+    fn halved_tiles_are_joined_too() {
+        let (vertices, tiles) = wall(3, 3, |x, y| [x, y, x - y]);
+        let halves = tiles.iter().flat_map(|t| [vec![t[0], t[1], t[2]], vec![t[0], t[2], t[3]]]).collect();
+        assert_eq!(sizes(&(vertices, halves)), [18]);
+    }
+
+    #[test]
+    fn panels_are_convex_flat_and_turned_one_way() {
+        // An L of three tiles.
+        let (vertices, mut tiles) = wall(2, 2, flat);
+        tiles.pop();
+        assert_eq!(sizes(&(vertices, tiles)), [2, 1]);
+        // A roof, one tile of which is higher by as little as can be at its far side.
+        let ridge = |height: f64| wall(2, 1, move |x, y| [x, y, if x == 2.0 { height } else { 1.0 }]);
+        assert_eq!(sizes(&ridge(1.0)), [2]);
+        assert_eq!(sizes(&ridge(1.0_f64.next_up())), [1, 1]);
+        // The corner in the middle of a side off its line by as little, outwards and inwards; or right on it.
+        let bent = |y: f64| wall(2, 1, move |x, row| [x, if x == 1.0 && row == 1.0 { y } else { row }, 1.0]);
+        assert_eq!(sizes(&bent(1.0)), [2]);
+        assert_eq!(sizes(&bent(1.0_f64.next_up())), [2]);
+        assert_eq!(sizes(&bent(1.0_f64.next_down())), [1, 1]);
+        // One tile turned over; and one folded back onto the other.
+        let (vertices, mut tiles) = wall(2, 1, flat);
+        tiles[1].reverse();
+        assert_eq!(sizes(&(vertices.clone(), tiles)), [1, 1]);
+        let folded = vec![vec![0, 1, 4, 3], vec![4, 1, 0, 3]];
+        assert_eq!(sizes(&(vertices, folded)), [1, 1]);
+    }
+
+    #[test]
+    fn tiles_twice_in_one_place_are_not_joined_with_each_other() {
+        let (vertices, tiles) = wall(2, 1, flat);
+        let twice = tiles.iter().chain(&tiles).cloned().collect();
+        let sizes = sizes(&(vertices, twice));
+        assert_eq!(sizes.iter().sum::<u32>(), 4);
+        assert!(sizes[0] <= 2, "{sizes:?}");
+    }
+
+    #[test]
+    fn corners_on_the_side_of_a_neighbour_keep_panels_apart() {
+        // Two tiles beside one that is as high as both: their common side has a corner of its own, but they are one panel first.
+        let vertices = vec![
+            [0.; 3],
+            [1., 0., 0.],
+            [1., 1., 0.],
+            [0., 1., 0.],
+            [1., 2., 0.],
+            [0., 2., 0.],
+            [3., 0., 0.],
+            [3., 2., 0.],
+        ];
+        let faces = vec![vec![0, 1, 2, 3], vec![3, 2, 4, 5], vec![1, 6, 7, 4]];
+        assert_eq!(sizes(&(vertices.clone(), faces)), [2, 1]);
+        let faces = vec![vec![0, 1, 2, 3], vec![3, 2, 4, 5], vec![1, 6, 7, 4, 2]];
+        assert_eq!(sizes(&(vertices, faces)), [2, 1]);
+    }
+
+    #[test]
+    fn what_is_hidden_from_outside_is_not_joined_with_what_is_not() {
+        // A box of tiles, and a tile that goes on beside one of its faces.
+        let mut vertices = Vec::new();
+        let mut faces = Vec::new();
+        let mut add = |mesh: Mesh| {
+            let first = vertices.len();
+            vertices.extend(mesh.0);
+            faces.extend(mesh.1.iter().map(|face| face.iter().map(|k| k + first).collect::<Vec<_>>()));
+        };
+        add(wall(2, 2, |x, y| [y, x, 0.0]));
+        add(wall(2, 2, |x, y| [x, y, 2.0]));
+        add(wall(2, 2, |x, y| [x, 0.0, y]));
+        add(wall(2, 2, |x, y| [y, 2.0, x]));
+        add(wall(2, 2, |x, y| [0.0, y, x]));
+        add(wall(2, 2, |x, y| [2.0, x, y]));
+        assert_eq!(sizes(&(vertices.clone(), faces.clone())), [4; 6]);
+        let more = vertices.len();
+        vertices.extend([[2., 0., 2.], [4., 0., 2.], [4., 2., 2.], [2., 2., 2.]]);
+        faces.push((more..more + 4).collect());
+        let with_flap = sizes(&(vertices, faces));
+        assert_eq!(with_flap, [4, 4, 4, 4, 4, 4, 1]);
+    }
 }

@@ -30,18 +30,18 @@ pub(super) fn places(before: &Scene, after: &Scene) -> Vec<Range<u32>> {
     places
 }
 
-/// The boxes, their bounds not known yet, with the pieces that take the places of those before: for each box that holds some its content is a
+/// The boxes, their bounds not known yet, with the pieces that take the places of those before, which panels held: for each box that holds some its content is a
 /// range of groups, which is the one group of its own. Boxes that nothing is left of are left out.
 pub(super) fn refit(
     nodes: &[BvhNode],
     order: &[u32],
-    panels: &Panels,
+    held: impl Fn(u32, &mut Vec<PieceId>),
     places: &[Range<u32>],
 ) -> (Vec<BvhNode>, Vec<Vec<PieceId>>) {
     let pieces = |range: &Range<u32>| {
         let mut before = Vec::new();
         for &panel in &order[range.start as usize..range.end as usize] {
-            panels.pieces(panel, &mut before);
+            held(panel, &mut before);
         }
         before.into_iter().flat_map(|piece| places[piece.index()].clone().map(PieceId)).collect::<Vec<_>>()
     };
@@ -82,7 +82,7 @@ pub(super) fn refit(
 }
 
 /// Gives boxes that hold groups of panels their bounds, and the panels an order.
-pub(super) fn fit(nodes: &mut [BvhNode], groups: &[Vec<u32>], panels: &Panels) -> Vec<u32> {
+pub(super) fn fit(nodes: &mut [BvhNode], groups: &[Vec<u32>], bounds: impl Fn(u32) -> Bounds) -> Vec<u32> {
     let mut order = Vec::new();
     for k in (0..nodes.len()).rev() {
         nodes[k].bounds = match nodes[k].content.clone() {
@@ -92,7 +92,7 @@ pub(super) fn fit(nodes: &mut [BvhNode], groups: &[Vec<u32>], panels: &Panels) -
                 let start = order.len() as u32;
                 order.extend(group);
                 nodes[k].content = Content::Panels(start..order.len() as u32);
-                group.iter().fold(Bounds::EMPTY, |all, &panel| all.union(panels.panel(panel).bounds))
+                group.iter().fold(Bounds::EMPTY, |all, &panel| all.union(bounds(panel)))
             }
         };
     }
@@ -135,14 +135,16 @@ mod tests {
         ) {
             let place = |k: usize| ((k as u64).wrapping_mul(shuffle | 1) % 101) as f64;
             let before: Vec<_> = (0..counts.len()).map(|k| unit_box(place(k))).collect();
-            let (nodes, order) = boxes(&before);
+            let (nodes, order) = boxes((0..counts.len() as u32).collect(), |k| before[k as usize]);
             let mut next = 0;
             let places: Vec<_> = counts.iter().map(|&n| { next += n; next - n..next }).collect();
             let bounds: Vec<_> = (0..next as usize).map(|k| unit_box(place(k + 7))).collect();
-            let (nodes, order) = refit(&nodes, &order, &places, &bounds);
+            let (mut nodes, groups) = refit(&nodes, &order, |panel, found| found.push(PieceId(panel)), &places);
+            let groups: Vec<Vec<u32>> = groups.iter().map(|pieces| pieces.iter().map(|piece| piece.0).collect()).collect();
+            let order = fit(&mut nodes, &groups, |piece| bounds[piece as usize]);
             let mut sorted = order.clone();
             sorted.sort_unstable();
-            prop_assert_eq!(sorted, (0..next).map(PieceId).collect::<Vec<_>>());
+            prop_assert_eq!(sorted, (0..next).collect::<Vec<_>>());
             let mut seen = vec![0; nodes.len()];
             let mut held = 0;
             for node in &nodes {
@@ -153,10 +155,10 @@ mod tests {
                         }
                         within.map(|k| nodes[k as usize].bounds).to_vec()
                     }
-                    Content::Pieces(range) => {
+                    Content::Panels(range) => {
                         prop_assert!(!range.is_empty());
                         held += range.len();
-                        order[range.start as usize..range.end as usize].iter().map(|p| bounds[p.index()]).collect()
+                        order[range.start as usize..range.end as usize].iter().map(|&p| bounds[p as usize]).collect()
                     }
                 };
                 prop_assert_eq!(node.bounds, inside.into_iter().fold(Bounds::EMPTY, Bounds::union));

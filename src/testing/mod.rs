@@ -49,6 +49,6 @@ pub use numbers::{
 };
 pub use scenes::{
     INSIDE, closed_scene, coplanar_overlaps, cyclic_overlap, duplicates, interpenetrating, mesh_soup,
-    near_coplanar_pair, point_inside, scene, t_junctions, triangle_soup,
+    near_coplanar_pair, point_inside, scene, t_junctions, tiles, triangle_soup,
 };
 pub use viewpoints::{free_viewpoint, viewpoint, viewpoint_in_plane, viewpoint_on_edge, viewpoint_on_vertex};

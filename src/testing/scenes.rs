@@ -178,6 +178,46 @@ pub fn coplanar_overlaps(mode: Mode) -> impl Strategy<Value = Faces> {
     })
 }
 
+/// A parallelogram cut into up to 5 x 5 tiles that share their corners; some are missing, halved to triangles, turned over, or there twice; and
+/// up to two triangles elsewhere. In chaos, where a plane with slopes cannot be kept, it is axis-aligned; its corners
+/// are nudged off their lines, all or none.
+pub fn tiles(mode: Mode) -> impl Strategy<Value = Faces> {
+    let plane = match mode {
+        Mode::Grid => [point(mode), point(mode), point(mode)].boxed(),
+        Mode::Chaos => coordinate(mode).prop_map(|z| [DVec3::new(-2.0, -2.0, z), DVec3::X, DVec3::Y]).boxed(),
+    };
+    let kinds = vec(0u8..16, 25);
+    (plane, [1i8..=5, 1i8..=5], kinds, any::<bool>(), any::<u64>(), triangle_soup(mode, 2)).prop_map(
+        move |([o, u, v], [columns, rows], kinds, nudge, seed, others)| {
+            let corner = |i: i8, j: i8| {
+                let p = o + u * f64::from(i) + v * f64::from(j);
+                let off = displacement(p, seed);
+                finite(if nudge && mode == Mode::Chaos { DVec3::new(p.x + off.x, p.y + off.y, p.z) } else { p })
+            };
+            let mut faces = Faces::default();
+            let places = (0..rows).flat_map(|j| (0..columns).map(move |i| (i, j)));
+            for ((i, j), kind) in places.zip(kinds) {
+                let mut tile = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
+                match kind {
+                    0 => continue,
+                    1 => tile.reverse(),
+                    _ => {}
+                }
+                for _ in 0..if kind == 2 { 2 } else { 1 } {
+                    if kind % 4 == 3 {
+                        faces.push(&[tile[0], tile[1], tile[2]]);
+                        faces.push(&[tile[0], tile[2], tile[3]]);
+                    } else {
+                        faces.push(&tile);
+                    }
+                }
+            }
+            faces.append(&others);
+            faces
+        },
+    )
+}
+
 /// A soup in which some triangles occur again, some of these turned over.
 pub fn duplicates(mode: Mode) -> impl Strategy<Value = Faces> {
     (mesh_soup(mode, 4), vec((any::<Index>(), any::<bool>()), 1..5)).prop_map(|(mut faces, again)| {
@@ -229,6 +269,7 @@ pub fn scene(mode: Mode) -> impl Strategy<Value = Faces> {
             2 => interpenetrating(mode).boxed(),
             2 => coplanar_overlaps(mode).boxed(),
             2 => duplicates(mode).boxed(),
+            2 => tiles(mode).boxed(),
             1 => cyclic_overlap(mode).boxed(),
             1 => closed_scene(mode).boxed(),
         ]

@@ -7,7 +7,7 @@ use nusselt::bvh::SceneBvh;
 use nusselt::contour::{Domain, Viewpoint};
 use nusselt::samples::{Kind, generate};
 use nusselt::scene::{PolygonId, Side};
-use nusselt::testing::{Case, case, check_image, check_same_regions, check_same_view, gallery};
+use nusselt::testing::{Case, case, case_of, check_image, check_same_regions, check_same_view, gallery, tiles};
 use proptest::prelude::*;
 
 fn same(polygon: PolygonId, side: Side) -> (PolygonId, Side) {
@@ -31,6 +31,19 @@ proptest! {
 
     #[test]
     fn both_ways_give_the_same_view(case in mode().prop_flat_map(case), seed in any::<u64>()) {
+        check(&case, seed)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(cases(300))]
+
+    /// Tiles of one plane go into views together.
+    #[test]
+    fn both_ways_give_the_same_view_of_tiles(
+        case in mode().prop_flat_map(|mode| case_of(mode, tiles(mode))),
+        seed in any::<u64>(),
+    ) {
         check(&case, seed)?;
     }
 }
@@ -62,7 +75,6 @@ fn both_ways_give_the_same_view_of_solids() {
             if let Err(defect) = check_same_regions(&by_bsp, &by_boxes) {
                 panic!("{kind} from {eye}: {defect}");
             }
-            eprintln!("{kind} from {eye}: {} {}", by_boxes.stats().inserted, by_bsp.stats().inserted);
         }
     }
 }
