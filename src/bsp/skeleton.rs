@@ -296,16 +296,9 @@ impl Skeleton {
         }
     }
 
-    /// The point where the stretch of `line` from `from` to `to`, which lie on opposite sides of
+    /// The point where a stretch of `line`, the ends of which lie on opposite sides of
     /// `plane`, crosses it. `crease` is where `plane` meets the plane of the fragment that is cut.
-    pub(crate) fn crossing(
-        &mut self,
-        line: LineId,
-        plane: PlaneId,
-        ends: [PointId; 2],
-        crease: LineId,
-        arena: &mut Arena,
-    ) -> PointId {
+    pub(crate) fn crossing(&mut self, line: LineId, plane: PlaneId, crease: LineId, arena: &mut Arena) -> PointId {
         let def = match self.line(line) {
             LineDef::Edge(edge) => PointDef::EdgePlane(edge, plane),
             LineDef::Crease([a, b]) => {
@@ -316,35 +309,33 @@ impl Skeleton {
         };
         let id = match self.constructed_ids.get(&def) {
             Some(&id) => id,
-            None => self.push_constructed(def, plane, ends, arena),
+            None => self.push_constructed(def, plane, arena),
         };
         self.note_incidence(id, self.representative(line).0);
         self.note_incidence(id, crease);
         id
     }
 
-    fn push_constructed(
-        &mut self,
-        def: PointDef,
-        plane: PlaneId,
-        [from, to]: [PointId; 2],
-        arena: &mut Arena,
-    ) -> PointId {
-        // On an edge of the scene interpolate between its exact ends.
-        let [from, to] = match def {
-            PointDef::EdgePlane([a, b], _) => [a, b].map(|v| self.approx_points[v.index()]),
-            _ => [from, to].map(|p| self.approx_point(p)),
+    fn push_constructed(&mut self, def: PointDef, plane: PlaneId, arena: &mut Arena) -> PointId {
+        // On an edge of the scene interpolated between its exact ends, where that is good. Of three planes made from these alone: whatever
+        // fragment comes to the point first, it is the same, and so are the planes that are chosen by it.
+        let interpolated = match def {
+            PointDef::EdgePlane(ends, _) => {
+                let [from, to] = ends.map(|v| self.approx_points[v.index()]);
+                let cut = &self.approx_planes[plane.index()];
+                let approx = ApproxPoint::between(from, to, cut.height(&from), cut.height(&to));
+                let poor = 1e-13 * (from.position.abs() + to.position.abs());
+                approx.err.cmple(poor).all().then_some(approx)
+            }
+            PointDef::Vertex(_) | PointDef::Planes(_) => None,
         };
-        let cut = &self.approx_planes[plane.index()];
-        let mut approx = ApproxPoint::between(from, to, cut.height(&from), cut.height(&to));
-        let poor = 1e-13 * (from.position.abs() + to.position.abs());
-        if !approx.err.cmple(poor).all() {
+        let mut approx = interpolated.unwrap_or_else(|| {
             let mark = arena.mark();
             let (x, w) = Constructor { frame: &self.frame, arena }.point(&self.resolved_point(def));
             let (position, err) = self.frame.position(arena, x, w);
-            approx = ApproxPoint { position, err };
             arena.release(mark);
-        }
+            ApproxPoint { position, err }
+        });
         let pinned = match &def {
             PointDef::Planes(planes) => planes.as_slice(),
             _ => std::slice::from_ref(&plane),

@@ -89,8 +89,7 @@ impl Splitter {
                 }
             }
             if here * there == Sign::Negative {
-                let point =
-                    skeleton.crossing(side.line, plane, [side.point, sides[next].point], crease, &mut self.arena);
+                let point = skeleton.crossing(side.line, plane, crease, &mut self.arena);
                 let rest = FragmentSide { point, ..side };
                 if here.is_positive() {
                     front.push(along_cut(point, true));

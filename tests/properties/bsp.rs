@@ -6,7 +6,7 @@ use nusselt::bsp::{BspOptions, FragmentRef, SceneBsp};
 use nusselt::contour::{Domain, Viewpoint};
 use nusselt::samples::{Kind, generate};
 use nusselt::testing::{
-    Case, Mode, case, check_bsp, check_fragments, check_mirror, check_order, check_same_bits, gallery,
+    Case, Faces, Mode, case, check_bsp, check_fragments, check_mirror, check_order, check_same_bits, gallery,
 };
 use proptest::prelude::*;
 
@@ -69,6 +69,30 @@ proptest! {
             prop_assert!(false, "a view of the tree is not proved");
         }
     }
+}
+
+/// Where three planes meet was rounded from whatever fragment came there first, and planes were chosen by that.
+#[test]
+fn points_of_three_planes_are_rounded_the_same_in_subtrees_that_grow_apart() {
+    let faces = Faces::from(vec![
+        vec![[0.0, 0.0, 0.0], [0.0, 0.0, -2.4612132887019227], [4.3205762522355595, 0.0, 0.0]],
+        vec![[-4.264085402519384, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 5.0765970258483595, 1.5629161495397632e23]],
+        vec![[0.0, 1999999997.011849, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 3.5922411693420952e22]],
+        vec![[0.0, -13736931860.948635, 0.0], [-7.0, 0.0, 0.0], [0.0, 1.0, 5e-324]],
+        vec![
+            [-3.5, -6868465930.474318, 0.0],
+            [0.0, 0.0, 6.470477967537394],
+            [0.0, -5.151212007527674, 4.060560237726005],
+        ],
+        vec![
+            [0.0, -6868465929.974318, 0.0],
+            [4.985421669945926, 0.0, -2.8164163075503152],
+            [-4.0, 7.186363232908502, 3.8597386191715115],
+        ],
+    ]);
+    let scene = faces.scene().unwrap();
+    let build = |grain| SceneBsp::build(&scene, &BspOptions { grain: Some(grain), ..BspOptions::default() }).unwrap();
+    assert_eq!(described(&build(0), DVec3::ZERO), described(&build(2), DVec3::ZERO));
 }
 
 #[test]
