@@ -164,9 +164,9 @@ fn regions() -> Result<(), Box<dyn Error>> {
 /// What it takes to move objects, against building anew, and what views of either take.
 fn moved() -> Result<(), Box<dyn Error>> {
     println!(
-        "| scene | moves | polygons | scene ms | its boxes ms | with_moved ms | moved ms | anew / moved | looseness | view ms | view anew ms |"
+        "| scene | moves | polygons | scene ms | its boxes ms | with_moved ms | moved ms | tightened ms | anew / moved | looseness | view ms | view anew ms |"
     );
-    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
+    println!("| --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |");
     for kind in Kind::ALL {
         let mesh = generate(kind, 50_000, 1)?;
         let scene = mesh.to_builder().build()?;
@@ -191,7 +191,7 @@ fn moved() -> Result<(), Box<dyn Error>> {
             let moving: Vec<ObjectId> = moves.iter().map(|(object, _)| *object).collect();
             let polygons = scene.polygons().filter(|polygon| moving.contains(&polygon.object())).count();
             let builder = mesh.to_builder();
-            let mut times = [f64::INFINITY; 4];
+            let mut times = [f64::INFINITY; 5];
             let mut note = |k: usize, start: Instant| times[k] = times[k].min(start.elapsed().as_secs_f64() * 1e3);
             let (mut after, mut anew) = (built.clone(), built.clone());
             for _ in 0..5 {
@@ -208,8 +208,12 @@ fn moved() -> Result<(), Box<dyn Error>> {
                 let start = Instant::now();
                 anew = SceneBvh::build(after.scene());
                 note(1, start);
+                let loose = after.clone();
+                let start = Instant::now();
+                let _ = loose.tightened();
+                note(4, start);
             }
-            let [build, boxes, with_moved, moved] = times;
+            let [build, boxes, with_moved, moved, tightened] = times;
             let mut views = [0.0; 2];
             for point in mesh.free_points(VIEWS, 3) {
                 for (sum, bvh) in views.iter_mut().zip([&after, &anew]) {
@@ -219,7 +223,7 @@ fn moved() -> Result<(), Box<dyn Error>> {
                 }
             }
             println!(
-                "| {kind} | {name} | {polygons} | {build:.1} | {boxes:.1} | {with_moved:.1} | {moved:.1} | {:.1} | {:.2} | {:.2} | {:.2} |",
+                "| {kind} | {name} | {polygons} | {build:.1} | {boxes:.1} | {with_moved:.1} | {moved:.1} | {tightened:.1} | {:.1} | {:.2} | {:.2} | {:.2} |",
                 (build + boxes) / moved,
                 after.looseness(),
                 views[0],
