@@ -72,10 +72,13 @@ mod tests {
         let top = seen(0.0).y;
         let bulge = top - p.y;
         for square in [1e-3, 0.1, 10.0] {
+            // On the chord, or on the curve, is between them for all that can be told.
+            let shares =
+                [(-0.5, false), (0.0, true), (0.5, true), (0.99, true), (1.0, true), (1.01, false), (1.5, false)];
             for x in [-0.03, 0.0, 0.05] {
                 // Where the curve is at x, in shares of what it is above the chord.
                 let above = f64::sqrt(0.5 * (1.0 - x * x)) - p.y;
-                for (share, expected) in [(-0.5, false), (0.5, true), (0.99, true), (1.01, false), (1.5, false)] {
+                for (share, expected) in shares {
                     let place = DVec2::new(x, p.y + above * share);
                     let direction = place.extend((1.0 - place.length_squared()).sqrt());
                     let corners = Corners::new([(place, direction)].into_iter(), square, 2.0 * bulge);
@@ -86,6 +89,25 @@ mod tests {
             // Its own ends are not between.
             let ends = [-0.1, 0.1].map(|angle| (seen(angle).truncate(), seen(angle)));
             assert!(!Corners::new(ends.into_iter(), square, bulge).are_between([p, q], normal));
+        }
+    }
+
+    /// A great circle is a circle in a stereographic picture: what is beyond its far side is not at a chord of the near one.
+    #[test]
+    fn corners_beyond_the_other_side_of_a_circle_are_not_between() {
+        let place = |d: DVec3| d.truncate() / (1.0 + d.z);
+        // Tilted about x: the circle's centre is not the picture's.
+        let normal = DVec3::new(0.0, -0.6, 0.8);
+        let seen = |angle: f64| DVec3::new(angle.sin(), angle.cos() * 0.8, angle.cos() * 0.6);
+        let [p, q] = [-5e-4, 5e-4].map(|angle| place(seen(angle)));
+        let far = place(seen(std::f64::consts::PI));
+        for beyond in [0.999, 1.001] {
+            let corner = far * beyond;
+            let length = corner.length_squared();
+            let direction = (2.0 * corner).extend(1.0 - length) / (1.0 + length);
+            let corners = Corners::new([(corner, direction)].into_iter(), 10.0, 0.01);
+            assert!(!corners.are_between([p, q], normal), "{beyond}");
+            assert!(!corners.are_between([q, p], -normal), "{beyond}, backwards");
         }
     }
 }
