@@ -91,23 +91,4 @@ mod tests {
             assert!(!Corners::new(ends.into_iter(), square, bulge).are_between([p, q], normal));
         }
     }
-
-    /// A great circle is a circle in a stereographic picture: what is beyond its far side is not at a chord of the near one.
-    #[test]
-    fn corners_beyond_the_other_side_of_a_circle_are_not_between() {
-        let place = |d: DVec3| d.truncate() / (1.0 + d.z);
-        // Tilted about x: the circle's centre is not the picture's.
-        let normal = DVec3::new(0.0, -0.6, 0.8);
-        let seen = |angle: f64| DVec3::new(angle.sin(), angle.cos() * 0.8, angle.cos() * 0.6);
-        let [p, q] = [-5e-4, 5e-4].map(|angle| place(seen(angle)));
-        let far = place(seen(std::f64::consts::PI));
-        for beyond in [0.999, 1.001] {
-            let corner = far * beyond;
-            let length = corner.length_squared();
-            let direction = (2.0 * corner).extend(1.0 - length) / (1.0 + length);
-            let corners = Corners::new([(corner, direction)].into_iter(), 10.0, 0.01);
-            assert!(!corners.are_between([p, q], normal), "{beyond}");
-            assert!(!corners.are_between([q, p], -normal), "{beyond}, backwards");
-        }
-    }
 }

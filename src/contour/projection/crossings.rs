@@ -38,6 +38,10 @@ pub(super) fn crossing(lines: &[Vec<DVec2>], square: f64) -> Vec<[u32; 2]> {
     }
     let mut meets: Vec<Vec<bool>> = lines.iter().map(|points| vec![false; points.len()]).collect();
     for segments in squares.values_mut() {
+        // Long pieces that lie on each other share many squares.
+        if segments.iter().all(|segment| meets[segment.at[0] as usize][segment.at[1] as usize]) {
+            continue;
+        }
         segments.sort_by(|s, t| s.low().total_cmp(&t.low()));
         for (k, first) in segments.iter().enumerate() {
             let high = first.ends[0].x.max(first.ends[1].x);
@@ -138,13 +142,13 @@ mod tests {
         assert!(!meet_any_way([[0.0, 0.0], [0.0, 4.0]], [[0.0, 5.0], [0.0, 6.0]]), "in one line, upright");
     }
 
-    /// All of a fan of a thousand crosses in one square.
+    /// All of a fan cross in one square. Their number is odd: none is found only as another's partner.
     #[test]
     fn a_square_full_of_crossings_is_told_once_a_stretch() {
-        let lines: Vec<Vec<DVec2>> = (0..1000)
+        let lines: Vec<Vec<DVec2>> = (0..1001)
             .map(|k| [[0.0, f64::from(k)], [1.0, -f64::from(k)]].map(|p| DVec2::from(p) / 2048.0).to_vec())
             .collect();
-        let all: Vec<[u32; 2]> = (0..1000).map(|line| [line, 0]).collect();
+        let all: Vec<[u32; 2]> = (0..1001).map(|line| [line, 0]).collect();
         assert_eq!(crossing(&lines, 1.0), all);
     }
 }

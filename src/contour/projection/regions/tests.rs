@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::bsp::{BspOptions, SceneBsp};
-use crate::contour::{Domain, Viewpoint};
+use crate::contour::{Domain, ViewOptions, Viewpoint};
 use crate::samples::cornell_box;
 use crate::scene::{Material, Scene};
 
@@ -203,4 +203,20 @@ fn what_rounding_turns_over_or_collapses_is_no_polygon_that_is_turned_over() {
             }
         }
     }
+}
+
+/// The horizon all but passes through the poles, and near them its longitudes are what rounding makes of them: pieces of it lie
+/// on each other however often they are halved.
+#[test]
+fn what_stays_tangled_is_told() {
+    let normal = DVec3::new(-4.780_716_324_351_141_5, -3.807_920_823_809_259_2, -5e-324);
+    let bsp = SceneBsp::build(&Scene::builder().build().expect("no faces"), &BspOptions::default()).expect("a tree");
+    let options = ViewOptions { quadtree_depth: Some(3), ..ViewOptions::default() };
+    let image = bsp.view_with(&Viewpoint::free(DVec3::ZERO), &Domain::Hemisphere(normal), &options).expect("a view");
+    with_flattener(&image, Projection::Equirectangular, |flattener| {
+        let inner = flattener.all_inner(1e-4);
+        let told: Vec<u32> = (0..).zip(&inner.is_tangled).filter_map(|(chain, told)| told.then_some(chain)).collect();
+        let horizon = |&chain: &u32| !flattener.is_on_seam(chain);
+        assert!(!told.is_empty() && told.iter().all(horizon), "the seam is straight: {told:?}");
+    });
 }
