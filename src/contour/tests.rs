@@ -7,6 +7,7 @@
 use super::directions::ExactCache;
 use super::{ContourImage, Domain, Quadtree, Spacing, Viewpoint};
 use crate::bsp::{BspOptions, SceneBsp};
+use crate::bvh::SceneBvh;
 use crate::exact::Sign;
 use crate::scene::{Material, PolygonId, Scene, Side};
 use glam::{DQuat, DVec3};
@@ -344,19 +345,45 @@ fn what_a_wall_hides_is_left_out() {
     let mut vertices = square(1.0, [0.0, 0.0], 10.0).to_vec();
     for k in 0..64u8 {
         let middle = [f64::from(k % 8) - 3.5, f64::from(k / 8) - 3.5];
-        vertices.extend(square(2.0 + f64::from(k % 4), middle, 0.3));
+        // Farther than all of the wall.
+        vertices.extend(square(20.0 + f64::from(k % 4), middle, 0.3));
     }
     let faces: Vec<Vec<usize>> = (0..65).map(|k| (4 * k..4 * k + 4).collect()).collect();
     let scene = Scene::builder().mesh(&vertices, &faces, Material::new("m")).build().unwrap();
     let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
     let image = bsp.view(&Viewpoint::free(DVec3::new(0.0, 0.1, 0.2)), &Domain::Sphere).unwrap();
     assert!(image.stats().skipped_subtrees > 0 && image.stats().inserted < 65, "{:?}", image.stats());
+    let boxes = SceneBvh::build(&scene);
+    let image = boxes.view(&Viewpoint::free(DVec3::new(0.0, 0.1, 0.2)), &Domain::Sphere).unwrap();
+    assert!(image.stats().skipped_subtrees > 0, "{:?}", image.stats());
+    assert!((1..65).contains(&image.stats().inserted), "{:?}", image.stats());
+}
+
+#[test]
+fn no_view_has_more_cells_than_allowed_and_none_fails_for_less() {
+    let (scene, eyes) = room(1.0, DVec3::ZERO);
+    let bsp = SceneBsp::build(&scene, &BspOptions::default()).unwrap();
+    let boxes = SceneBvh::build(&scene);
+    for eye in eyes {
+        let eye = Viewpoint::free(eye);
+        let views = |max_cells: usize| {
+            let options = super::ViewOptions { max_cells, ..Default::default() };
+            [bsp.view_with(&eye, &Domain::Sphere, &options), boxes.view_with(&eye, &Domain::Sphere, &options)]
+        };
+        let counts = views(usize::MAX).map(|view| view.unwrap().cell_count());
+        for (k, count) in counts.into_iter().enumerate() {
+            for limit in [0, 9, count / 2, count - 1] {
+                let error = views(limit)[k].as_ref().err().cloned();
+                assert_eq!(error, Some(super::ViewError::TooManyCells { limit }), "of {count} cells");
+            }
+            assert_eq!(views(count)[k].as_ref().map(ContourImage::cell_count), Ok(count));
+        }
+    }
 }
 
 #[test]
 fn memory_of_other_views_changes_nothing() {
     use super::{ViewOptions, ViewSpace};
-    use crate::bvh::SceneBvh;
     use crate::samples::{Kind, generate};
     let bits = |image: &ContourImage| {
         let cells = image.cells().map(|cell| {

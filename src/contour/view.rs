@@ -171,6 +171,14 @@ impl<'a> Sight<'a> {
         Ok(Self { skeleton, eye, contour, buffers, stats: ViewStats::default() })
     }
 
+    /// The error of a view that has too many cells by now.
+    fn check_size(&self, max_cells: usize) -> Result<(), ViewError> {
+        if self.contour.leaves.len() > max_cells {
+            return Err(ViewError::TooManyCells { limit: max_cells });
+        }
+        Ok(())
+    }
+
     /// The image; what it does not need goes back to `space`.
     fn finish(self, order: SceneOrder, viewpoint: &Viewpoint, domain: &Domain, space: &mut ViewSpace) -> ContourImage {
         let work = &self.buffers.work;

@@ -482,3 +482,6 @@ impl<'a> Flattener<'a> {
         ring
     }
 }
+
+#[cfg(test)]
+mod tests;

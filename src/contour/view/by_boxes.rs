@@ -88,9 +88,7 @@ impl Walk<'_> {
         let near = |node: u32| distance_to_box(eye, &hierarchy.nodes[node as usize].bounds);
         let mut stack = if hierarchy.nodes.is_empty() { Vec::new() } else { vec![(near(0), 0, root)] };
         while let Some((distance, node, top)) = stack.pop() {
-            if self.sight.contour.leaves.len() > max_cells {
-                return Err(ViewError::TooManyCells { limit: max_cells });
-            }
+            self.sight.check_size(max_cells)?;
             let node = &hierarchy.nodes[node as usize];
             let seen = SeenBox::new(eye, node.bounds.low, node.bounds.high);
             let top = self.sight.contour.around(top, &seen);
@@ -110,7 +108,7 @@ impl Walk<'_> {
                 }
             }
         }
-        Ok(())
+        self.sight.check_size(max_cells)
     }
 
     /// Puts in a panel; piece by piece if others lie in its plane, where the numbers of polygons tell which is seen.
@@ -323,6 +321,32 @@ impl Rivals<'_> {
             Sides { negative: true, positive: true } => Verdict::InFrontWithin(HalfSphere::new(circle, nearer)),
             Sides { positive, .. } if positive == nearer.is_positive() => Verdict::InFront,
             _ => Verdict::Behind,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_rational::BigRational;
+
+    #[test]
+    fn distances_are_bounded_from_both_sides_and_closely() {
+        let mut state = 1u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / 2f64.powi(52) - 1.0
+        };
+        let exact = |x: f64| BigRational::from_float(x).expect("finite");
+        let square = |x: BigRational| &x * &x;
+        for k in 0..400 {
+            let mut point = |scale: i32| DVec3::new(random(), random(), random()) * 2f64.powi(scale);
+            let (eye, p) = (point(k - 200), point(k / 2 - 100));
+            let squared: BigRational = (0..3).map(|axis| square(exact(eye[axis]) - exact(p[axis]))).sum();
+            let (near, far) = (distance_to_box(eye, &Bounds { low: p, high: p }), distance_bound(eye, p));
+            assert!(square(exact(near)) <= squared, "{eye} {p}: {near}");
+            assert!(square(exact(far)) >= squared, "{eye} {p}: {far}");
+            assert!(far - near <= 1e-14 * far, "{eye} {p}: {near} {far}");
         }
     }
 }

@@ -65,9 +65,7 @@ fn walk(sight: &mut Sight<'_>, tree: &Tree, max_cells: usize) -> Result<(), View
     let mut stack = if tree.nodes.is_empty() { Vec::new() } else { vec![Step::Subtree(0)] };
     let mut fragments = Vec::new();
     while let Some(step) = stack.pop() {
-        if sight.contour.leaves.len() > max_cells {
-            return Err(ViewError::TooManyCells { limit: max_cells });
-        }
+        sight.check_size(max_cells)?;
         // Leaves are open or final.
         if sight.contour.far() == 0.0 {
             break;
@@ -91,7 +89,7 @@ fn walk(sight: &mut Sight<'_>, tree: &Tree, max_cells: usize) -> Result<(), View
             }
         }
     }
-    Ok(())
+    sight.check_size(max_cells)
 }
 
 fn insert(sight: &mut Sight<'_>, tree: &Tree, id: FragmentId) {
