@@ -23,7 +23,8 @@ fn rows(c: &mut Criterion) {
         let mut group = c.benchmark_group(polygons.to_string());
         group.sample_size(20);
         let bsp = SceneBsp::build(&scene, &BspOptions::default()).expect("epsilon is 0");
-        for (name, order) in [("contour", bsp.into()), ("contour by boxes", SceneOrder::from(SceneBvh::build(&scene)))] {
+        for (name, order) in [("contour", bsp.into()), ("contour by boxes", SceneOrder::from(SceneBvh::build(&scene)))]
+        {
             let (mut space, up) = (ViewSpace::new(), Domain::Hemisphere(DVec3::Z));
             group.bench_function(name, |b| {
                 b.iter(|| {
