@@ -1,10 +1,11 @@
 //! The measured parts of docs/performance.md with figures in docs/images: `cargo run --release --example performance`, or only some of them:
-//! `-- scaling`, `-- threads`, `-- quadtree`.
+//! `-- scaling`, `-- threads`, `-- overlaps`, `-- quadtree`.
 //!
 //! Hemisphere views, normal up, of generated scenes from points inside.
 
 #[path = "../shared/marks.rs"]
 mod marks;
+mod overlaps;
 mod plot;
 mod quadtree;
 mod scaling;
@@ -17,13 +18,18 @@ use std::path::Path;
 /// What measures a part of the page and draws its figures in a folder.
 type Part = fn(&Path) -> Result<String, Box<dyn Error>>;
 
-const PARTS: [(&str, Part); 3] = [("scaling", scaling::part), ("threads", threads::part), ("quadtree", quadtree::part)];
+const PARTS: [(&str, Part); 4] = [
+    ("scaling", scaling::part),
+    ("threads", threads::part),
+    ("overlaps", overlaps::part),
+    ("quadtree", quadtree::part),
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
     let words: Vec<String> = std::env::args().skip(1).collect();
     if let Some(word) = words.iter().find(|word| PARTS.iter().all(|(name, _)| name != word)) {
-        return Err(format!("there are scaling, threads and quadtree, not {word}").into());
+        return Err(format!("there are scaling, threads, overlaps and quadtree, not {word}").into());
     }
     for (name, part) in PARTS {
         if words.is_empty() || words.iter().any(|word| word == name) {

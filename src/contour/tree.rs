@@ -9,7 +9,7 @@ use glam::DVec3;
 use std::ops::Range;
 
 /// A place in the tree: an inner node or a leaf.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Link {
     Node(u32),
     Leaf(u32),

@@ -15,6 +15,8 @@ use crate::exact::{SeenBox, Sign, U};
 use crate::scene::{PieceId, PieceRef, PlaneId, Side, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
 
 impl SceneBvh {
     /// The contour image from a viewpoint: the same labelled subdivision as [`SceneBsp::view`](crate::bsp::SceneBsp::view) gives, cut into
@@ -80,30 +82,59 @@ struct Walk<'a> {
     parts: Vec<(u32, u32)>,
 }
 
+/// What is yet to be looked at: what is nearest first, then in an order that is always the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Waiting {
+    /// The bits of a lower bound on its distance, which are in the order of the numbers.
+    distance: u64,
+    what: Item,
+    /// A place in the contour tree that all of its projection is below.
+    top: Link,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Item {
+    Box(u32),
+    Panel(u32),
+}
+
 impl Walk<'_> {
     fn run(&mut self, max_cells: usize) -> Result<(), ViewError> {
         let hierarchy = self.hierarchy;
         let eye = self.sight.eye;
-        let root = self.sight.contour.root;
-        let near = |node: u32| distance_to_box(eye, &hierarchy.nodes[node as usize].bounds);
-        let mut stack = if hierarchy.nodes.is_empty() { Vec::new() } else { vec![(near(0), 0, root)] };
-        while let Some((distance, node, top)) = stack.pop() {
+        let mut queue = BinaryHeap::new();
+        let within =
+            |distance: f64, what: Item, top: Link| Reverse(Waiting { distance: distance.to_bits(), what, top });
+        if let Some(whole) = hierarchy.nodes.first() {
+            queue.push(within(distance_to_box(eye, &whole.bounds), Item::Box(0), self.sight.contour.root));
+        }
+        while let Some(Reverse(Waiting { distance, what, top })) = queue.pop() {
             self.sight.check_size(max_cells)?;
-            let node = &hierarchy.nodes[node as usize];
+            let number = match what {
+                Item::Panel(panel) => {
+                    self.put_in(panel, top);
+                    continue;
+                }
+                Item::Box(number) => number,
+            };
+            let node = &hierarchy.nodes[number as usize];
             let seen = SeenBox::new(eye, node.bounds.low, node.bounds.high);
             let top = self.sight.contour.around(top, &seen);
-            if self.sight.contour.hides(top, &seen, distance, &mut self.sight.buffers.work) {
+            if self.sight.contour.hides(top, &seen, f64::from_bits(distance), &mut self.sight.buffers.work) {
                 self.sight.stats.skipped_subtrees += 1;
                 continue;
             }
             match &node.content {
                 Content::Boxes(boxes) => {
-                    let [first, second] = boxes.map(|k| (near(k), k, top));
-                    stack.extend(if first.0 <= second.0 { [second, first] } else { [first, second] });
+                    for &number in boxes {
+                        let near = distance_to_box(eye, &hierarchy.nodes[number as usize].bounds);
+                        queue.push(within(near, Item::Box(number), top));
+                    }
                 }
                 Content::Panels(range) => {
                     for &panel in &hierarchy.order[range.start as usize..range.end as usize] {
-                        self.put_in(panel, top);
+                        let near = distance_to_box(eye, &hierarchy.panels.panel(panel).bounds);
+                        queue.push(within(near, Item::Panel(panel), top));
                     }
                 }
             }
