@@ -63,6 +63,12 @@ pub enum SceneProblem {
         /// The polygon.
         polygon: PolygonId,
     },
+    /// A hole that overlaps another one, lies in it or is the same: what is inside is not known.
+    #[error("polygon {polygon} has holes that overlap, or one in another; merge them, or make what is in a hole a polygon")]
+    HolesOverlap {
+        /// The polygon.
+        polygon: PolygonId,
+    },
     /// A boundary that runs back and forth over itself, or past itself, so often that triangulating it
     /// would take time quadratic in its length.
     #[error("polygon {polygon} takes too much work to triangulate; remove doubled edges or split it")]
@@ -145,6 +151,7 @@ impl SceneProblem {
             | Self::UnknownObject { polygon, .. }
             | Self::SelfCrossing { polygon }
             | Self::HoleOutside { polygon }
+            | Self::HolesOverlap { polygon }
             | Self::TooMuchWork { polygon }
             | Self::NonPlanar { polygon }
             | Self::ZeroArea { polygon }
