@@ -5,7 +5,8 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 use nusselt::exact::{Sign, orient3d};
 use nusselt::scene::{
-    Axis, FaceSpec, Material, OrDrop, PolygonId, Repair, Scene, SceneError, SceneProblem, Shape, Side, SupportingPlane, VertexId,
+    Axis, FaceSpec, Material, OrDrop, PolygonId, Repair, Scene, SceneError, SceneProblem, Shape, Side, SupportingPlane,
+    VertexId,
 };
 use proptest::prelude::*;
 use std::collections::HashMap;
