@@ -105,6 +105,10 @@ fn dropped_faces_keep_the_first_cause_in_all_formats() {
         assert_eq!(info["polygons"], 2, "{name}");
         let dropped = &info["repairs"]["dropped"]["malformed"];
         assert_eq!((&dropped["count"], &dropped["first"][0]["polygon"]), (&json!(1), &json!(1)), "{name}");
+        // The corners that are there make it as large as they are apart.
+        let size = dropped["first"][0]["size"].as_f64().expect("a number");
+        let expected = if ["a.obj", "a.stl"].contains(&name) { 0.0 } else { 1.0 };
+        assert!((size - expected).abs() < f64::EPSILON, "{name}: {size}");
         let problem = dropped["first"][0]["problem"].as_str().expect("text");
         assert!(problem.contains(cause), "{name}: {problem}");
         // The warning of the reader gives the same cause.
@@ -115,7 +119,28 @@ fn dropped_faces_keep_the_first_cause_in_all_formats() {
         assert!(err.starts_with(&format!("nusselt: {name}:")), "{err}");
     }
     let [_, err] = folder.run("info b.stl", 1);
-    assert_eq!(err, "nusselt: b.stl: triangle 1: a coordinate is not finite; correct it\n");
+    let advice = "--repair malformed=drop leaves out such faces, and takes the rest";
+    assert_eq!(err, format!("nusselt: b.stl: triangle 1: a coordinate is not finite; correct it\n{advice}\n"));
+}
+
+#[test]
+fn faults_are_counted_alike_whatever_they_are() {
+    let folder = Folder::new("counts");
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    folder.write("a.obj", format!("{vertices}f 1 2 3\nf 1 2 8\nf 1 2\nf 1 2 x\n"));
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    folder.write("a.ply", format!("{header}3 0 1 2\n3 0 1 7\n2 0 1\n3 0 1 x\n"));
+    for (name, first) in [("a.obj", "5: there is no vertex 8; the file has 3"), ("a.ply", "14: there is no vertex 7")] {
+        let [out, err] = folder.run(&format!("info {name} --json --repair malformed=drop"), 0);
+        assert!(err.starts_with(&format!("nusselt: warning: {name}:{first}")), "{err}");
+        assert!(err.contains("(faults of vertices and faces: 3 in all)\n"), "{err}");
+        assert!(err.contains("dropped 3 polygons (malformed): 1, 2, 3\n"), "{err}");
+        let info: Value = serde_json::from_str(&out).expect("JSON");
+        for dropped in info["repairs"]["dropped"]["malformed"]["first"].as_array().expect("a list") {
+            assert_eq!(dropped["size"], 1.0, "{name}: {dropped}");
+        }
+    }
 }
 
 #[test]

@@ -531,3 +531,15 @@ fn extensions_that_change_what_is_seen_are_told() {
         assert_eq!(faults(read(&file)), [expected]);
     }
 }
+
+#[test]
+fn a_triangle_with_two_bad_corners_has_one_fault() {
+    let mut bytes = buffer();
+    bytes[0..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    bytes[12..16].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    let found = faults(parse_with(square().to_string().as_bytes(), &bytes));
+    let triangle = |k: u32| {
+        format!("test.gltf: node 0, mesh 0, primitive 0, triangle {k}: a coordinate is not finite; correct it")
+    };
+    assert_eq!(found, [triangle(0), triangle(1)]);
+}

@@ -1,6 +1,6 @@
 //! What can be wrong with a scene.
 
-use super::PolygonId;
+use super::{DropCause, PolygonId};
 
 /// One thing that is wrong with the input of a [`SceneBuilder`](super::SceneBuilder).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -64,7 +64,9 @@ pub enum SceneProblem {
         polygon: PolygonId,
     },
     /// A hole that overlaps another one, lies in it or is the same: what is inside is not known.
-    #[error("polygon {polygon} has holes that overlap, or one in another; merge them, or make what is in a hole a polygon")]
+    #[error(
+        "polygon {polygon} has holes that overlap, or one in another; merge them, or make what is in a hole a polygon"
+    )]
     HolesOverlap {
         /// The polygon.
         polygon: PolygonId,
@@ -157,6 +159,24 @@ impl SceneProblem {
             | Self::ZeroArea { polygon }
             | Self::Duplicate { polygon, .. }
             | Self::OutOfRange { polygon, .. } => Some(polygon),
+            _ => None,
+        }
+    }
+
+    /// The policy of a [`Repair`](super::Repair) that drops faces with this problem, if there is one.
+    pub fn dropped_by(&self) -> Option<DropCause> {
+        match self {
+            Self::NotFinite { .. }
+            | Self::TooFewVertices { .. }
+            | Self::UnknownVertex { .. }
+            | Self::Unreadable { .. } => Some(DropCause::Malformed),
+            Self::SelfCrossing { .. }
+            | Self::HoleOutside { .. }
+            | Self::HolesOverlap { .. }
+            | Self::TooMuchWork { .. }
+            | Self::OutOfRange { .. } => Some(DropCause::SelfCrossing),
+            Self::NonPlanar { .. } => Some(DropCause::NonPlanar),
+            Self::Duplicate { .. } => Some(DropCause::Duplicate),
             _ => None,
         }
     }

@@ -7,8 +7,8 @@ use crate::repairs::changes;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
 use nusselt::contour::SceneOrder;
-use nusselt::io::read_scene;
-use nusselt::scene::Scene;
+use nusselt::io::{ReadError, read_scene};
+use nusselt::scene::{DropCause, OrDrop, Repair, Scene};
 use std::path::Path;
 use std::time::Instant;
 
@@ -21,7 +21,7 @@ pub(crate) fn load<'a>(
 ) -> Result<(Scene, f64), Failure> {
     keep(&[path.to_owned()], outputs.clone())?;
     let start = Instant::now();
-    let loaded = read_scene(path, &loading.options()).map_err(|error| Failure::Work(error.to_string()))?;
+    let loaded = read_scene(path, &loading.options()).map_err(|error| refused(&error, &loading.repair))?;
     let seconds = start.elapsed().as_secs_f64();
     keep(&loaded.files, outputs)?;
     for warning in &loaded.warnings {
@@ -31,6 +31,25 @@ pub(crate) fn load<'a>(
         common.warn(&format!("{}: {change}", path.display()));
     }
     Ok((loaded.scene, seconds))
+}
+
+/// What is wrong with a file, and with which repair its broken faces would be left out.
+fn refused(error: &ReadError, repair: &Repair) -> Failure {
+    let mut dropping = *repair;
+    if let ReadError::Invalid(faults) = error {
+        for cause in faults.droppable() {
+            match cause {
+                DropCause::Malformed => dropping.malformed = OrDrop::Drop,
+                DropCause::SelfCrossing => dropping.self_crossing = OrDrop::Drop,
+                // These are refused only if one asks for it.
+                DropCause::NonPlanar | DropCause::Duplicate => {}
+            }
+        }
+    }
+    if dropping == *repair {
+        return Failure::Work(error.to_string());
+    }
+    Failure::Work(format!("{error}\n--repair {dropping} leaves out such faces, and takes the rest"))
 }
 
 /// The 3D BSP of the scene of a file, and how many seconds building it took.

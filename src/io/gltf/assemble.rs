@@ -269,20 +269,20 @@ impl Builder<'_, '_> {
             let is_mirrored = orient3d(DVec3::ZERO, axes.x_axis, axes.y_axis, axes.z_axis).is_negative();
             for k in 0..triangles.count {
                 let place = || run.place(run.first + k);
-                match triangles.corners(k) {
-                    Ok(corners) => {
-                        let position = |corner| transform.transform_point3(triangles.positions().position(corner));
-                        let mut ring = corners.map(|corner| self.draft.add_vertex(position(corner), place));
-                        if is_mirrored {
-                            ring.swap(0, 1);
-                        }
-                        self.draft.add_face(vec![ring.to_vec()], object, material);
-                    }
-                    Err(unknown) => {
-                        let count = triangles.positions().count;
+                let mut corners = triangles.corners(k);
+                if is_mirrored {
+                    corners.swap(0, 1);
+                }
+                let count = triangles.positions().count;
+                let position = |corner| transform.transform_point3(triangles.positions().position(corner));
+                let known = corners.into_iter().filter(|&corner| corner < count);
+                let ring = known.map(|corner| self.draft.add_vertex(position(corner), place)).collect();
+                match corners.into_iter().find(|&corner| corner >= count) {
+                    None => self.draft.add_face(vec![ring], object, material),
+                    Some(unknown) => {
                         let what = format!("there is no vertex {unknown}; the primitive has {count}");
                         self.draft.refuse_face(place(), &what);
-                        self.draft.add_broken_face(what, object, material);
+                        self.draft.add_broken_face(what, vec![ring], object, material);
                     }
                 }
             }

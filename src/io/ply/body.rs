@@ -18,9 +18,12 @@ enum Role {
     None,
 }
 
-/// A face as the file has it, or what is wrong with it.
+/// A face as the file has it.
 struct Face {
-    ring: Result<Vec<usize>, String>,
+    /// Those corners that can be read.
+    ring: Vec<usize>,
+    /// What is wrong with it, at first.
+    broken: Option<String>,
     origin: Origin,
 }
 
@@ -137,9 +140,12 @@ impl Reader<'_> {
                 self.vertex_count += 1;
             }
             Role::Face(_) => {
-                let ring = indices(&self.numbers).inspect_err(|what| self.draft.refuse_face(place(), what));
+                let (ring, broken) = indices(&self.numbers);
+                if let Some(what) = &broken {
+                    self.draft.refuse_face(place(), what);
+                }
                 let origin = self.origin(role, k);
-                self.faces.push(Face { ring, origin });
+                self.faces.push(Face { ring, broken, origin });
             }
             Role::Strips(_) => self.add_strips(k, place),
             Role::None => {}
@@ -153,13 +159,13 @@ impl Reader<'_> {
         let numbers = std::mem::take(&mut self.numbers);
         for strip in numbers.split(|&number| number == -1.0) {
             for (turn, corners) in strip.windows(3).enumerate() {
-                let mut ring = indices(corners).inspect_err(|what| self.draft.refuse_face(place(), what));
-                if let Ok(ring) = &mut ring
-                    && turn % 2 == 1
-                {
-                    ring.swap(0, 1);
+                let (mut ring, broken) = indices(corners);
+                match &broken {
+                    Some(what) => self.draft.refuse_face(place(), what),
+                    None if turn % 2 == 1 => ring.swap(0, 1),
+                    None => {}
                 }
-                self.faces.push(Face { ring, origin });
+                self.faces.push(Face { ring, broken, origin });
             }
         }
     }
@@ -175,7 +181,8 @@ impl Reader<'_> {
         if let Role::Face(_) = role {
             self.draft.refuse_face(place, &what);
             let origin = self.origin(role, k);
-            self.faces.push(Face { ring: Err(what), origin });
+            let (ring, _) = indices(&self.numbers);
+            self.faces.push(Face { ring, broken: Some(what), origin });
         } else {
             self.draft.fault(place, what);
         }
@@ -194,36 +201,34 @@ impl Reader<'_> {
         let material = self.draft.builder.add_material(Material::new("default"));
         let count = self.vertex_count;
         let mut origins = Vec::with_capacity(self.faces.len());
-        for Face { ring, origin } in self.faces {
+        for Face { ring, broken, origin } in self.faces {
             origins.push(origin);
-            let ring = ring.and_then(|ring| match ring.iter().find(|&&index| index >= count) {
-                Some(unknown) if !self.draft.drops => {
-                    let known =
-                        if count == 0 { "there are none".to_owned() } else { format!("they are 0 to {}", count - 1) };
-                    let what = format!("there is no vertex {unknown}; {known}");
-                    self.draft.refuse_face(origin.place(), &what);
-                    Err(what)
-                }
-                _ => Ok(ring),
+            let broken = broken.or_else(|| {
+                let unknown = ring.iter().find(|&&index| index >= count)?;
+                let known =
+                    if count == 0 { "there are none".to_owned() } else { format!("they are 0 to {}", count - 1) };
+                let what = format!("there is no vertex {unknown}; {known}");
+                self.draft.refuse_face(origin.place(), &what);
+                Some(what)
             });
-            match ring {
-                Ok(ring) => self.draft.add_face(vec![ring], object, material),
-                Err(why) => self.draft.add_broken_face(why, object, material),
+            match broken {
+                None => self.draft.add_face(vec![ring], object, material),
+                Some(why) => self.draft.add_broken_face(why, vec![ring], object, material),
             }
         }
         self.draft.finish(|k| origins.get(k).map_or(Place::File, |origin| origin.place()), |_| None)
     }
 }
 
-/// The vertices that a face names.
-fn indices(numbers: &[f64]) -> Result<Vec<usize>, String> {
-    if numbers.len() < 3 {
-        return Err(format!("a face takes at least 3 vertices, but here are {}", numbers.len()));
-    }
-    numbers
-        .iter()
-        .map(|&number| whole(number).ok_or_else(|| format!("{number} is not the index of a vertex")))
-        .collect()
+/// The vertices that a face names, and what is wrong with what else it has.
+fn indices(numbers: &[f64]) -> (Vec<usize>, Option<String>) {
+    let ring: Vec<usize> = numbers.iter().copied().filter_map(whole).collect();
+    let broken = match numbers.iter().find(|&&number| whole(number).is_none()) {
+        _ if numbers.len() < 3 => Some(format!("a face takes at least 3 vertices, but here are {}", numbers.len())),
+        Some(number) => Some(format!("{number} is not the index of a vertex")),
+        None => None,
+    };
+    (ring, broken)
 }
 
 /// What an element is read for.

@@ -120,11 +120,12 @@ impl Reader<'_> {
             (None, None) if ring.len() < 3 => Some(format!("a facet takes 3 vertices, but here are {}", ring.len())),
             (None, _) => None,
         };
-        if let Some(what) = &end {
+        // Of a facet that is dropped the first fault is enough.
+        if let Some(what) = end.as_ref().filter(|_| broken.is_none() || !self.draft.drops) {
             self.draft.refuse_face(Place::Line(line), what);
         }
         match broken.or(end) {
-            Some(why) => self.draft.add_broken_face(why, object, self.material),
+            Some(why) => self.draft.add_broken_face(why, vec![ring], object, self.material),
             None => self.draft.add_face(vec![ring], object, self.material),
         }
     }
