@@ -144,6 +144,46 @@ fn faults_are_counted_alike_whatever_they_are() {
 }
 
 #[test]
+fn text_that_is_ignored_or_is_no_text_is_told() {
+    let folder = Folder::new("surplus");
+    let header = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let text = format!("ply\nformat ascii 1.0\n{header}0 0 0\n1 0 0 7\n0 1 0\n3 0 1 2 2\n\n9 9\n8\n");
+    folder.write("a.ply", text);
+    let mut bytes = format!("ply\nformat binary_little_endian 1.0\n{header}").into_bytes();
+    bytes.extend([0., 0., 0., 1., 0., 0., 0., 1., 0.].iter().flat_map(|x: &f32| x.to_le_bytes()));
+    bytes.push(3);
+    bytes.extend([0, 1, 2].iter().flat_map(|k: &i32| k.to_le_bytes()));
+    folder.write("c.ply", [&bytes[..], b"\r\n"].concat());
+    bytes.extend(b"\n123");
+    folder.write("b.ply", bytes);
+    let [_, err] = folder.run("info a.ply", 0);
+    let expected = [
+        "a.ply:11: more than its element takes was ignored, in 2 lines in all",
+        "a.ply:15: what follows the last element was ignored",
+    ];
+    assert_eq!(err, expected.map(|what| format!("nusselt: warning: {what}\n")).concat());
+    let [_, err] = folder.run("info b.ply", 0);
+    assert_eq!(err, "nusselt: warning: b.ply: the 4 bytes after the last element were ignored\n");
+    assert_eq!(folder.run("info c.ply", 0)[1], "", "the end of a line is nothing");
+
+    folder.write(
+        "a.stl",
+        "solid a facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet",
+    );
+    let [_, err] = folder.run("info a.stl", 1);
+    assert!(err.starts_with("nusselt: a.stl:1: the facets follow in the line of `solid`"), "{err}");
+    folder.write("b.stl", "solid facet plate\nfacet vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endfacet\nendsolid\n");
+    folder.run("info b.stl", 0);
+
+    for order in [u16::to_le_bytes, u16::to_be_bytes] {
+        let text = "\u{feff}v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        folder.write("a.obj", text.encode_utf16().flat_map(order).collect::<Vec<u8>>());
+        assert_eq!(folder.run("info a.obj", 1)[1], "nusselt: a.obj: its text is UTF-16; save it as UTF-8\n");
+    }
+}
+
+#[test]
 fn missing_files_come_with_advice() {
     let folder = Folder::new("missing");
     let advice = "; check the name and the folder\n";

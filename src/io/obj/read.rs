@@ -57,6 +57,10 @@ pub fn parse(
     load: impl FnMut(&str) -> io::Result<Vec<u8>>,
 ) -> Result<Loaded, ReadError> {
     let mut reader = Reader::new(name, options, load);
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        reader.draft.fault(Place::File, "its text is UTF-16; save it as UTF-8");
+        return Err(reader.draft.into_error());
+    }
     for line in lines(bytes) {
         reader.read_line(&line);
     }

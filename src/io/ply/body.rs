@@ -5,7 +5,7 @@ use super::super::error::Place;
 use super::super::number::shown;
 use super::super::{Loaded, ReadError};
 use super::header::{Element, Header, Kind};
-use super::source::{Missing, Source, whole};
+use super::source::{LeftOver, Missing, Source, whole};
 use crate::scene::Material;
 use glam::DVec3;
 
@@ -52,17 +52,29 @@ struct Reader<'a> {
     faces: Vec<Face>,
     /// The numbers of the element that are of interest.
     numbers: Vec<f64>,
+    /// The first line with more in it than its element takes, and how many there are.
+    surplus: Option<usize>,
+    surplus_count: usize,
 }
 
 pub(super) fn parse<'a>(header: &Header<'a>, draft: Draft<'a>) -> Result<Loaded, ReadError> {
     let source = Source::new(header.encoding, header.body, header.lines);
-    let mut reader = Reader { draft, source, vertex_count: 0, faces: Vec::new(), numbers: Vec::new() };
+    let mut reader = Reader {
+        draft,
+        source,
+        vertex_count: 0,
+        faces: Vec::new(),
+        numbers: Vec::new(),
+        surplus: None,
+        surplus_count: 0,
+    };
     for element in &header.elements {
         if let Err((place, what)) = reader.read_elements(element) {
             reader.draft.fault(place, what);
             return Err(reader.draft.into_error());
         }
     }
+    reader.warn();
     reader.finish()
 }
 
@@ -88,7 +100,13 @@ impl Reader<'_> {
             let line = self.source.line;
             let place = || if is_text { Place::Line(line) } else { Place::Item(format!("{} {k}", element.name)) };
             match result {
-                Ok(()) => self.add(role, k, place),
+                Ok(()) => {
+                    self.add(role, k, place);
+                    if self.source.has_surplus() {
+                        self.surplus_count += 1;
+                        self.surplus.get_or_insert(line);
+                    }
+                }
                 Err(Missing::Bad(what)) if is_text => {
                     self.add_broken(role, k, place(), what);
                 }
@@ -193,6 +211,24 @@ impl Reader<'_> {
             _ if self.source.is_text() => Origin::Line(self.source.line),
             Role::Strips(_) => Origin::Strips(k),
             _ => Origin::Face(k),
+        }
+    }
+
+    /// Says what is ignored though it may have been meant.
+    fn warn(&mut self) {
+        if let Some(line) = self.surplus {
+            let count = self.surplus_count;
+            let what = format_args!("more than its element takes was ignored, in {count} lines in all");
+            self.draft.warn(&Place::Line(line), what);
+        }
+        match self.source.left_over() {
+            LeftOver::Nothing => {}
+            LeftOver::Line(line) => {
+                self.draft.warn(&Place::Line(line), "what follows the last element was ignored");
+            }
+            LeftOver::Bytes(count) => {
+                self.draft.warn(&Place::File, format_args!("the {count} bytes after the last element were ignored"));
+            }
         }
     }
 

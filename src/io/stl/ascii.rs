@@ -56,6 +56,11 @@ impl Reader<'_> {
             match word.to_ascii_lowercase().as_str() {
                 "solid" => {
                     self.end_facet(Some("`solid`"));
+                    let has = |word: &str| rest.split(is_blank).any(|other| other.eq_ignore_ascii_case(word));
+                    if has("facet") && has("vertex") {
+                        let what = "the facets follow in the line of `solid`, which ends with its name; break the line";
+                        return Err(what.to_owned());
+                    }
                     let name = if rest.is_empty() { "default" } else { rest };
                     self.object = Some(self.draft.builder.add_object(name));
                     return Ok(());
