@@ -184,6 +184,19 @@ fn text_that_is_ignored_or_is_no_text_is_told() {
 }
 
 #[test]
+fn levels_of_detail_are_numbers() {
+    let folder = Folder::new("lods");
+    folder.write("a.json", cityjson().to_string().replace("7]", "2]"));
+    for lod in ["nan", "inf", "-inf", "x", "2.x"] {
+        let [_, err] = folder.run(&format!("info a.json --lod {lod}"), 2);
+        assert!(err.contains("--lod"), "{err}");
+    }
+    folder.run("info a.json --lod=", 2);
+    folder.run("info a.json --lod 2.0", 0);
+    folder.run("info a.json --lod 3", 1);
+}
+
+#[test]
 fn missing_files_come_with_advice() {
     let folder = Folder::new("missing");
     let advice = "; check the name and the folder\n";
