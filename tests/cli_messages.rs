@@ -197,6 +197,29 @@ fn levels_of_detail_are_numbers() {
 }
 
 #[test]
+fn flawed_edges_are_listed_with_polygons_and_sizes() {
+    let folder = Folder::new("edges");
+    // A square and three triangles at its first side, one of them turned; one more whose corner is in that side.
+    let text = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 -1 0\nv 1 0 1\nv 1 0 0\nv 1 -1 -1\nv 2 -1 -1\n\
+                f 1 2 3 4\nf 1 2 5\nf 1 2 6\nf 7 8 9\n";
+    folder.write("a.obj", text);
+    let [out, _] = folder.run("info a.obj", 0);
+    assert!(out.contains("open edges   of polygons 0 (length 2), 1 (length 1.41"), "{out}");
+    assert!(out.contains("crowded      of polygons 0 and 1 and 2 (length 2)\n"), "{out}");
+    assert!(out.contains("T-junctions  1, 0 of them not exactly on the edge: 1,0,0 in 0,0,0 to 2,0,0\n"), "{out}");
+    folder.write("b.obj", text.replace("f 1 2 6\nf 7 8 9\n", "").replace("v 1 0 0\n", "v 1 0 1e-12\n"));
+    let [out, _] = folder.run("info b.obj", 0);
+    assert!(out.contains("turned       0,0,0 to 2,0,0\n"), "{out}");
+    folder.write("c.obj", text.replace("v 1 0 0\n", "v 1 0 1e-12\n"));
+    let [out, _] = folder.run("info c.obj", 0);
+    assert!(out.contains(": 1,0,1e-12 in 0,0,0 to 2,0,0 (gap 1e-12)\n"), "{out}");
+    // What there is none of has no line.
+    folder.write("d.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n");
+    let [out, _] = folder.run("info d.obj", 0);
+    assert!(["open edges", "crowded", "turned"].iter().all(|what| !out.contains(what)), "{out}");
+}
+
+#[test]
 fn missing_files_come_with_advice() {
     let folder = Folder::new("missing");
     let advice = "; check the name and the folder\n";
