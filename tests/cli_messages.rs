@@ -196,6 +196,44 @@ fn levels_of_detail_are_numbers() {
     folder.run("info a.json --lod 3", 1);
 }
 
+/// Triangles with corners anywhere in a cube: most of them pass through each other.
+fn soup(count: usize) -> String {
+    let mut state = 7_u64;
+    let mut number = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40).to_string()
+    };
+    let vertices: String =
+        (0..3 * count).map(|_| ["v ", &number(), " ", &number(), " ", &number(), "\n"].concat()).collect();
+    let faces = (0..count).map(|k| format!("f {} {} {}\n", 3 * k + 1, 3 * k + 2, 3 * k + 3));
+    faces.fold(vertices, |text, face| text + &face)
+}
+
+#[test]
+fn a_scene_that_falls_into_too_many_fragments_has_its_report_all_the_same() {
+    let folder = Folder::new("soup");
+    folder.write("a.obj", soup(1000));
+    let why = "the scene's polygons cut each other into more than 1048576 fragments; simplify it";
+    let [out, err] = folder.run("info a.obj", 0);
+    assert_eq!(err, "");
+    assert!(out.contains("edges        3000 open\n"), "{out}");
+    assert!(out.contains(&format!("3D BSP       not built: {why}")), "{out}");
+    let [out, _] = folder.run("info a.obj --json", 0);
+    let info: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!(
+        (&info["polygons"], &info["open_edges"]["count"], &info["bsp"]),
+        (&json!(1000), &json!(3000), &json!(null))
+    );
+    assert!(info["bsp_not_built"].as_str().is_some_and(|what| what.starts_with(why)), "{info}");
+    let [_, err] = folder.run("info a.obj --fragments -o b.obj", 1);
+    assert!(err.starts_with(&format!("nusselt: a.obj: {why}")) && !err.contains("::"), "{err}");
+    assert!(!folder.0.join("b.obj").exists());
+    folder.write("a.obj", soup(1));
+    let [out, _] = folder.run("info a.obj --json", 0);
+    let info: Value = serde_json::from_str(&out).expect("JSON");
+    assert!(info["bsp"]["nodes"] == 1 && info.get("bsp_not_built").is_none(), "{info}");
+}
+
 #[test]
 fn flawed_edges_are_listed_with_polygons_and_sizes() {
     let folder = Folder::new("edges");

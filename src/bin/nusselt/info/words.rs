@@ -3,13 +3,13 @@
 use super::{concave, emitters};
 use crate::repairs;
 use crate::summary::{Lines, Timing, named, number, vector};
-use nusselt::bsp::SceneBsp;
+use nusselt::bsp::{BspError, SceneBsp};
 use nusselt::scene::{
     Component, CoplanarOverlap, CrowdedEdge, Fronts, MeshReport, NonPlanarPolygon, OpenEdge, Orientation, PolygonId,
     Scene, TJunction, VertexId,
 };
 
-pub(super) fn summary(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing: Timing) -> String {
+pub(super) fn summary(scene: &Scene, report: &MeshReport, bsp: Result<&SceneBsp, &BspError>, timing: Timing) -> String {
     let mut lines = Lines::default();
     let shapes = [
         (concave(scene), "concave"),
@@ -28,6 +28,15 @@ pub(super) fn summary(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing
     repairs::tell(scene.repairs(), &mut lines);
     flaws(scene, report, &mut lines);
     surfaces(report, &mut lines);
+    match bsp {
+        Ok(bsp) => tree(bsp, &mut lines),
+        Err(error) => lines.add("3D BSP", format!("not built: {error}")),
+    }
+    lines.add("time", format!("load {:.3} s, BSP {:.3} s", timing.load_s, timing.bsp_s));
+    lines.0
+}
+
+fn tree(bsp: &SceneBsp, lines: &mut Lines) {
     let stats = bsp.stats();
     lines.add(
         "3D BSP",
@@ -36,8 +45,6 @@ pub(super) fn summary(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing
     if bsp.epsilon() > 0.0 {
         lines.add("epsilon", format!("{}, {} slivers left uncut", number(bsp.epsilon()), stats.uncut_slivers));
     }
-    lines.add("time", format!("load {:.3} s, BSP {:.3} s", timing.load_s, timing.bsp_s));
-    lines.0
 }
 
 /// Those there are any of.
