@@ -257,6 +257,31 @@ fn flawed_edges_are_listed_with_polygons_and_sizes() {
     assert!(["open edges", "crowded", "turned"].iter().all(|what| !out.contains(what)), "{out}");
 }
 
+/// A triangle of which a corner smaller than rounding is seen past another one; a triangle that has such a corner cut off by the plane of
+/// another one.
+#[test]
+fn slivers_that_are_no_faces_are_counted() {
+    let folder = Folder::new("slivers");
+    let tiny = 2.0_f64.powi(-54);
+    let wall = "v 1 1 1\nv 2 1 1\nv 1 2 1\nf 1 2 3\n";
+    folder.write("a.obj", format!("{wall}v {tiny} 1 0.5\nv 1 {tiny} 0.5\nv 4 4 0.5\nf 4 5 6\n"));
+    let [_, err] = folder.run("contour a.obj --eye 0,0,0 --sphere -o x.obj", 0);
+    let what = "too thin to have three different corners were left out";
+    assert_eq!(err, format!("nusselt: warning: x.obj: 2 cells {what}\n"));
+    let tiny = 2.0_f64.powi(-52);
+    folder.write("b.obj", format!("{wall}v {tiny} 4 2\nv 4 {tiny} 2\nv 0 0 0\nf 4 5 6\n"));
+    let [out, err] = folder.run("info b.obj --fragments -o y.obj", 0);
+    assert!(out.contains("3 fragments"), "{out}");
+    assert_eq!(err, format!("nusselt: warning: y.obj: 1 fragments {what}\n"));
+    let faces = |name: &str| {
+        let text = fs::read_to_string(folder.0.join(name)).expect("written");
+        text.lines().filter(|line| line.starts_with("f ")).count()
+    };
+    assert_eq!(faces("y.obj"), 2);
+    folder.write("c.obj", wall);
+    assert_eq!(folder.run("contour c.obj --eye 0,0,0 --sphere -o z.obj", 0)[1], "");
+}
+
 #[test]
 fn missing_files_come_with_advice() {
     let folder = Folder::new("missing");
