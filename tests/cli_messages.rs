@@ -257,6 +257,55 @@ fn flawed_edges_are_listed_with_polygons_and_sizes() {
     assert!(["open edges", "crowded", "turned"].iter().all(|what| !out.contains(what)), "{out}");
 }
 
+/// A triangle before a wall, seen from the origin. Two of its sides are nearer to each other than the rounding of points if it is thin.
+fn before_a_wall(is_thin: bool) -> String {
+    let (b, w) = (1_i64 << 50, 1_i64 << 53);
+    let corners = [
+        [0, b - 1, b],
+        if is_thin { [0, b - 2, b - 1] } else { [0, b / 2, b] },
+        [b / 2, b / 2, b],
+        [-w, -w, w / 2],
+        [w, -w, w / 2],
+        [w, w, w / 2],
+        [-w, w, w / 2],
+    ];
+    let vertices = corners.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
+    format!("{vertices}f 1 2 3\nf 4 5 6 7\n")
+}
+
+#[test]
+fn tangled_features_are_marked_and_counted() {
+    let folder = Folder::new("tangled");
+    for (is_thin, projection) in
+        [true, false].into_iter().flat_map(|thin| ["nusselt", "stereographic", "equirectangular"].map(|p| (thin, p)))
+    {
+        folder.write("a.obj", before_a_wall(is_thin));
+        let line = format!("contour a.obj --eye 0,0,0 --normal 0,0,1 --projection {projection} -o a.geojson");
+        let [_, err] = folder.run(&line, 0);
+        let picture: Value =
+            serde_json::from_str(&fs::read_to_string(folder.0.join("a.geojson")).expect("written")).expect("JSON");
+        let mut marked = Vec::new();
+        for feature in picture["features"].as_array().expect("features") {
+            let properties = &feature["properties"];
+            match properties.get("tangled") {
+                None => {}
+                Some(tangled) => {
+                    assert_eq!(tangled, true);
+                    marked.push(properties["polygon"].clone());
+                }
+            }
+        }
+        let (expected, warning) = if is_thin {
+            let what =
+                "the rings of 2 features may touch or cross: their points are rounded, and they have the property";
+            (vec![json!(0), json!(1)], format!("nusselt: warning: a.geojson: {what} `tangled`\n"))
+        } else {
+            (Vec::new(), String::new())
+        };
+        assert_eq!((marked, err), (expected, warning), "{projection}");
+    }
+}
+
 /// A triangle of which a corner smaller than rounding is seen past another one; a triangle that has such a corner cut off by the plane of
 /// another one.
 #[test]
