@@ -105,6 +105,10 @@ fn dropped_faces_keep_the_first_cause_in_all_formats() {
         assert_eq!(info["polygons"], 2, "{name}");
         let dropped = &info["repairs"]["dropped"]["malformed"];
         assert_eq!((&dropped["count"], &dropped["first"][0]["polygon"]), (&json!(1), &json!(1)), "{name}");
+        // The corners that are there make it as large as they are apart.
+        let size = dropped["first"][0]["size"].as_f64().expect("a number");
+        let expected = if ["a.obj", "a.stl"].contains(&name) { 0.0 } else { 1.0 };
+        assert!((size - expected).abs() < f64::EPSILON, "{name}: {size}");
         let problem = dropped["first"][0]["problem"].as_str().expect("text");
         assert!(problem.contains(cause), "{name}: {problem}");
         // The warning of the reader gives the same cause.
@@ -115,7 +119,216 @@ fn dropped_faces_keep_the_first_cause_in_all_formats() {
         assert!(err.starts_with(&format!("nusselt: {name}:")), "{err}");
     }
     let [_, err] = folder.run("info b.stl", 1);
-    assert_eq!(err, "nusselt: b.stl: triangle 1: a coordinate is not finite; correct it\n");
+    let advice = "--repair malformed=drop leaves out such faces, and takes the rest";
+    assert_eq!(err, format!("nusselt: b.stl: triangle 1: a coordinate is not finite; correct it\n{advice}\n"));
+}
+
+#[test]
+fn faults_are_counted_alike_whatever_they_are() {
+    let folder = Folder::new("counts");
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+    folder.write("a.obj", format!("{vertices}f 1 2 3\nf 1 2 8\nf 1 2\nf 1 2 x\n"));
+    let header = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    folder.write("a.ply", format!("{header}3 0 1 2\n3 0 1 7\n2 0 1\n3 0 1 x\n"));
+    for (name, first) in [("a.obj", "5: there is no vertex 8; the file has 3"), ("a.ply", "14: there is no vertex 7")] {
+        let [out, err] = folder.run(&format!("info {name} --json --repair malformed=drop"), 0);
+        assert!(err.starts_with(&format!("nusselt: warning: {name}:{first}")), "{err}");
+        assert!(err.contains("(faults of vertices and faces: 3 in all)\n"), "{err}");
+        assert!(err.contains("dropped 3 polygons (malformed): 1, 2, 3\n"), "{err}");
+        let info: Value = serde_json::from_str(&out).expect("JSON");
+        for dropped in info["repairs"]["dropped"]["malformed"]["first"].as_array().expect("a list") {
+            assert_eq!(dropped["size"], 1.0, "{name}: {dropped}");
+        }
+    }
+}
+
+#[test]
+fn text_that_is_ignored_or_is_no_text_is_told() {
+    let folder = Folder::new("surplus");
+    let header = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                  element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    let text = format!("ply\nformat ascii 1.0\n{header}0 0 0\n1 0 0 7\n0 1 0\n3 0 1 2 2\n\n9 9\n8\n");
+    folder.write("a.ply", text);
+    let mut bytes = format!("ply\nformat binary_little_endian 1.0\n{header}").into_bytes();
+    bytes.extend([0., 0., 0., 1., 0., 0., 0., 1., 0.].iter().flat_map(|x: &f32| x.to_le_bytes()));
+    bytes.push(3);
+    bytes.extend([0, 1, 2].iter().flat_map(|k: &i32| k.to_le_bytes()));
+    folder.write("c.ply", [&bytes[..], b"\r\n"].concat());
+    bytes.extend(b"\n123");
+    folder.write("b.ply", bytes);
+    let [_, err] = folder.run("info a.ply", 0);
+    let expected = [
+        "a.ply:11: more than its element takes was ignored, in 2 lines in all",
+        "a.ply:15: what follows the last element was ignored",
+    ];
+    assert_eq!(err, expected.map(|what| format!("nusselt: warning: {what}\n")).concat());
+    let [_, err] = folder.run("info b.ply", 0);
+    assert_eq!(err, "nusselt: warning: b.ply: the 4 bytes after the last element were ignored\n");
+    assert_eq!(folder.run("info c.ply", 0)[1], "", "the end of a line is nothing");
+
+    folder.write(
+        "a.stl",
+        "solid a facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet",
+    );
+    let [_, err] = folder.run("info a.stl", 1);
+    assert!(err.starts_with("nusselt: a.stl:1: the facets follow in the line of `solid`"), "{err}");
+    folder.write("b.stl", "solid facet plate\nfacet vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endfacet\nendsolid\n");
+    folder.run("info b.stl", 0);
+
+    for order in [u16::to_le_bytes, u16::to_be_bytes] {
+        let text = "\u{feff}v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+        folder.write("a.obj", text.encode_utf16().flat_map(order).collect::<Vec<u8>>());
+        assert_eq!(folder.run("info a.obj", 1)[1], "nusselt: a.obj: its text is UTF-16; save it as UTF-8\n");
+    }
+}
+
+#[test]
+fn levels_of_detail_are_numbers() {
+    let folder = Folder::new("lods");
+    folder.write("a.json", cityjson().to_string().replace("7]", "2]"));
+    for lod in ["nan", "inf", "-inf", "x", "2.x"] {
+        let [_, err] = folder.run(&format!("info a.json --lod {lod}"), 2);
+        assert!(err.contains("--lod"), "{err}");
+    }
+    folder.run("info a.json --lod=", 2);
+    folder.run("info a.json --lod 2.0", 0);
+    folder.run("info a.json --lod 3", 1);
+}
+
+/// Triangles with corners anywhere in a cube: most of them pass through each other.
+fn soup(count: usize) -> String {
+    let mut state = 7_u64;
+    let mut number = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 40).to_string()
+    };
+    let vertices: String =
+        (0..3 * count).map(|_| ["v ", &number(), " ", &number(), " ", &number(), "\n"].concat()).collect();
+    let faces = (0..count).map(|k| format!("f {} {} {}\n", 3 * k + 1, 3 * k + 2, 3 * k + 3));
+    faces.fold(vertices, |text, face| text + &face)
+}
+
+#[test]
+fn a_scene_that_falls_into_too_many_fragments_has_its_report_all_the_same() {
+    let folder = Folder::new("soup");
+    folder.write("a.obj", soup(1000));
+    let why = "the scene's polygons cut each other into more than 1048576 fragments; simplify it";
+    let [out, err] = folder.run("info a.obj", 0);
+    assert_eq!(err, "");
+    assert!(out.contains("edges        3000 open\n"), "{out}");
+    assert!(out.contains(&format!("3D BSP       not built: {why}")), "{out}");
+    let [out, _] = folder.run("info a.obj --json", 0);
+    let info: Value = serde_json::from_str(&out).expect("JSON");
+    assert_eq!(
+        (&info["polygons"], &info["open_edges"]["count"], &info["bsp"]),
+        (&json!(1000), &json!(3000), &json!(null))
+    );
+    assert!(info["bsp_not_built"].as_str().is_some_and(|what| what.starts_with(why)), "{info}");
+    let [_, err] = folder.run("info a.obj --fragments -o b.obj", 1);
+    assert!(err.starts_with(&format!("nusselt: a.obj: {why}")) && !err.contains("::"), "{err}");
+    assert!(!folder.0.join("b.obj").exists());
+    folder.write("a.obj", soup(1));
+    let [out, _] = folder.run("info a.obj --json", 0);
+    let info: Value = serde_json::from_str(&out).expect("JSON");
+    assert!(info["bsp"]["nodes"] == 1 && info.get("bsp_not_built").is_none(), "{info}");
+}
+
+#[test]
+fn flawed_edges_are_listed_with_polygons_and_sizes() {
+    let folder = Folder::new("edges");
+    // A square and three triangles at its first side, one of them turned; one more whose corner is in that side.
+    let text = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 -1 0\nv 1 0 1\nv 1 0 0\nv 1 -1 -1\nv 2 -1 -1\n\
+                f 1 2 3 4\nf 1 2 5\nf 1 2 6\nf 7 8 9\n";
+    folder.write("a.obj", text);
+    let [out, _] = folder.run("info a.obj", 0);
+    assert!(out.contains("open edges   of polygons 0 (length 2), 1 (length 1.41"), "{out}");
+    assert!(out.contains("crowded      of polygons 0 and 1 and 2 (length 2)\n"), "{out}");
+    assert!(out.contains("T-junctions  1, 0 of them not exactly on the edge: 1,0,0 in 0,0,0 to 2,0,0\n"), "{out}");
+    folder.write("b.obj", text.replace("f 1 2 6\nf 7 8 9\n", "").replace("v 1 0 0\n", "v 1 0 1e-12\n"));
+    let [out, _] = folder.run("info b.obj", 0);
+    assert!(out.contains("turned       0,0,0 to 2,0,0\n"), "{out}");
+    folder.write("c.obj", text.replace("v 1 0 0\n", "v 1 0 1e-12\n"));
+    let [out, _] = folder.run("info c.obj", 0);
+    assert!(out.contains(": 1,0,1e-12 in 0,0,0 to 2,0,0 (gap 1e-12)\n"), "{out}");
+    // What there is none of has no line.
+    folder.write("d.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2 1\n");
+    let [out, _] = folder.run("info d.obj", 0);
+    assert!(["open edges", "crowded", "turned"].iter().all(|what| !out.contains(what)), "{out}");
+}
+
+/// A triangle before a wall, seen from the origin. Two of its sides are nearer to each other than the rounding of points if it is thin.
+fn before_a_wall(is_thin: bool) -> String {
+    let (b, w) = (1_i64 << 50, 1_i64 << 53);
+    let corners = [
+        [0, b - 1, b],
+        if is_thin { [0, b - 2, b - 1] } else { [0, b / 2, b] },
+        [b / 2, b / 2, b],
+        [-w, -w, w / 2],
+        [w, -w, w / 2],
+        [w, w, w / 2],
+        [-w, w, w / 2],
+    ];
+    let vertices = corners.map(|[x, y, z]| format!("v {x} {y} {z}\n")).concat();
+    format!("{vertices}f 1 2 3\nf 4 5 6 7\n")
+}
+
+#[test]
+fn tangled_features_are_marked_and_counted() {
+    let folder = Folder::new("tangled");
+    for (is_thin, projection) in
+        [true, false].into_iter().flat_map(|thin| ["nusselt", "stereographic", "equirectangular"].map(|p| (thin, p)))
+    {
+        folder.write("a.obj", before_a_wall(is_thin));
+        let line = format!("contour a.obj --eye 0,0,0 --normal 0,0,1 --projection {projection} -o a.geojson");
+        let [_, err] = folder.run(&line, 0);
+        let picture: Value =
+            serde_json::from_str(&fs::read_to_string(folder.0.join("a.geojson")).expect("written")).expect("JSON");
+        let mut marked = Vec::new();
+        for feature in picture["features"].as_array().expect("features") {
+            let properties = &feature["properties"];
+            match properties.get("tangled") {
+                None => {}
+                Some(tangled) => {
+                    assert_eq!(tangled, true);
+                    marked.push(properties["polygon"].clone());
+                }
+            }
+        }
+        let (expected, warning) = if is_thin {
+            let what =
+                "the rings of 2 features may touch or cross: their points are rounded, and they have the property";
+            (vec![json!(0), json!(1)], format!("nusselt: warning: a.geojson: {what} `tangled`\n"))
+        } else {
+            (Vec::new(), String::new())
+        };
+        assert_eq!((marked, err), (expected, warning), "{projection}");
+    }
+}
+
+/// A triangle of which a corner smaller than rounding is seen past another one; a triangle that has such a corner cut off by the plane of
+/// another one.
+#[test]
+fn slivers_that_are_no_faces_are_counted() {
+    let folder = Folder::new("slivers");
+    let tiny = 2.0_f64.powi(-54);
+    let wall = "v 1 1 1\nv 2 1 1\nv 1 2 1\nf 1 2 3\n";
+    folder.write("a.obj", format!("{wall}v {tiny} 1 0.5\nv 1 {tiny} 0.5\nv 4 4 0.5\nf 4 5 6\n"));
+    let [_, err] = folder.run("contour a.obj --eye 0,0,0 --sphere -o x.obj", 0);
+    let what = "too thin to have three different corners were left out";
+    assert_eq!(err, format!("nusselt: warning: x.obj: 2 cells {what}\n"));
+    let tiny = 2.0_f64.powi(-52);
+    folder.write("b.obj", format!("{wall}v {tiny} 4 2\nv 4 {tiny} 2\nv 0 0 0\nf 4 5 6\n"));
+    let [out, err] = folder.run("info b.obj --fragments -o y.obj", 0);
+    assert!(out.contains("3 fragments"), "{out}");
+    assert_eq!(err, format!("nusselt: warning: y.obj: 1 fragments {what}\n"));
+    let faces = |name: &str| {
+        let text = fs::read_to_string(folder.0.join(name)).expect("written");
+        text.lines().filter(|line| line.starts_with("f ")).count()
+    };
+    assert_eq!(faces("y.obj"), 2);
+    folder.write("c.obj", wall);
+    assert_eq!(folder.run("contour c.obj --eye 0,0,0 --sphere -o z.obj", 0)[1], "");
 }
 
 #[test]

@@ -54,13 +54,47 @@ fn without_repair_broken_files_are_refused_with_their_lines() {
     assert!(err.contains("broken.obj:20: there is no vertex 99"), "{err}");
     let [_, err] = folder.run("info broken.obj --repair malformed=drop,self-crossing=drop,non-planar=reject", 1);
     assert!(err.contains("broken.obj:18: polygon 2 is not exactly planar"), "{err}");
+    assert!(!err.contains("--repair"), "what is rejected on request comes without advice: {err}");
+}
+
+/// The lines of a vertex that is not finite, a face with a bad index, one that is no number, one with two corners, a bow tie.
+#[test]
+fn a_refusal_names_the_repair_that_goes_on() {
+    let folder = Folder::new("advice");
+    let vertices = "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 1 0\nv 0 0 nan\n";
+    for (faces, given, advised) in [
+        ("f 1 2 9", "", "malformed=drop"),
+        ("f 1 2 x", "", "malformed=drop"),
+        ("f 1 2", "", "malformed=drop"),
+        ("f 1 2 3 4", "", "self-crossing=drop"),
+        ("f 1 2 3 4\nf 1 2 9", "", "self-crossing=drop,malformed=drop"),
+        ("f 1 2 3 4", "weld=0.5", "self-crossing=drop,weld=0.5"),
+    ] {
+        let vertices = vertices.rsplit_once("v 0 0 nan").expect("the last one").0;
+        fs::write(folder.0.join("a.obj"), format!("{vertices}{faces}\n")).expect("writable");
+        let given = if given.is_empty() { String::new() } else { format!(" --repair {given}") };
+        for command in ["info a.obj", "contour a.obj --eye 0,0,1 --sphere"] {
+            let [_, err] = folder.run(&format!("{command}{given}"), 1);
+            let advice = format!("\n--repair {advised} leaves out such faces, and takes the rest\n");
+            assert!(err.ends_with(&advice), "{faces}: {err}");
+            folder.run(&format!("{command} --repair {advised}"), 0);
+        }
+    }
+    fs::write(folder.0.join("a.obj"), format!("{vertices}f 1 2 5\n")).expect("writable");
+    let [_, err] = folder.run("info a.obj", 1);
+    assert!(err.ends_with("\n--repair malformed=drop leaves out such faces, and takes the rest\n"), "{err}");
+    folder.run("info nowhere.obj", 1);
 }
 
 #[test]
 fn what_is_changed_is_warned_of_and_listed() {
     let folder = Folder::new("listed");
     let [out, err] = folder.run(&format!("info broken.obj --json --repair {ALL}"), 0);
-    let warnings: Vec<&str> = err.lines().collect();
+    // First what the reader says about the first of them, with its line.
+    let (reader, changes) = err.split_once('\n').expect("several lines");
+    let fault = "there is no vertex 99; the file has 15 (faults of vertices and faces: 1 in all)";
+    assert_eq!(reader, format!("nusselt: warning: broken.obj:20: {fault}"));
+    let warnings: Vec<&str> = changes.lines().collect();
     let expected = [
         "malformed=drop dropped 1 polygons (malformed): 4",
         "self-crossing=drop dropped 1 polygons (self-crossing): 1",
@@ -76,7 +110,7 @@ fn what_is_changed_is_warned_of_and_listed() {
     let repairs = &info["repairs"];
     assert_eq!(repairs["dropped"]["duplicate"]["first"][0]["polygon"], 3);
     assert_eq!(repairs["dropped"]["self_crossing"]["first"][0]["size"], 8f64.sqrt());
-    let problem = "polygon 4 names vertex 98, but there are 15 vertices";
+    let problem = "polygon 4 cannot be read: there is no vertex 99; the file has 15";
     assert_eq!(repairs["dropped"]["malformed"]["first"][0]["problem"], problem);
     let moved = json!({ "count": 1, "first": [{ "vertex": 12, "from": [1.0, 1.0, 1e-6], "to": [1.0, 1.0, 0.0], "distance": 1e-6 }] });
     assert_eq!(repairs["welded"], moved);
@@ -94,7 +128,7 @@ fn what_is_changed_is_warned_of_and_listed() {
 fn flaws_that_stay_are_listed_with_their_sizes() {
     let folder = Folder::new("flaws");
     let [out, err] = folder.run("info broken.obj --json --repair malformed=drop,self-crossing=drop", 0);
-    assert_eq!(err.lines().count(), 2);
+    assert_eq!(err.lines().count(), 3);
     let info: Value = serde_json::from_str(&out).expect("JSON");
     assert_eq!(info["repairs"]["welded"]["count"], 0);
     assert_eq!(info["duplicates"], json!({ "count": 1, "first": [[0, 3]] }));

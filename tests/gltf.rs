@@ -184,7 +184,11 @@ fn points_and_lines_are_passed_over() {
     file["meshes"][0]["primitives"] = json!([points, file["meshes"][0]["primitives"][0], { "attributes": {} }]);
     let loaded = read(&file).unwrap();
     assert_eq!(loaded.scene.polygon_count(), 2);
-    assert_eq!(loaded.warnings, ["test.gltf: 2 primitives of points or lines were ignored"]);
+    let expected = [
+        "1 primitives of points or lines were ignored",
+        "1 primitives of triangles have no positions and were ignored",
+    ];
+    assert_eq!(loaded.warnings, expected.map(|what| format!("test.gltf: {what}")));
 }
 
 #[test]
@@ -478,4 +482,64 @@ fn optional_members_that_are_null_are_absent() {
             (null, without) => assert_eq!(faults(null), faults(without), "{list}"),
         }
     }
+}
+
+#[test]
+fn extensions_that_change_what_is_seen_are_told() {
+    let warned = |pointer: &str, value: Value, warning: &str| {
+        let loaded = read(&changed(pointer, value)).unwrap_or_else(|error| panic!("{pointer}: {error}"));
+        assert_eq!(loaded.warnings, [format!("test.gltf: {warning}")]);
+    };
+    warned(
+        "/nodes/0/extensions",
+        json!({ "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": 0 } } }),
+        "1 nodes are instanced by EXT_mesh_gpu_instancing, which is not applied: each is there once, where it is itself",
+    );
+    let hidden = "1 nodes are not to be visible by KHR_node_visibility, which is not applied: they are there";
+    warned("/nodes/0/extensions", json!({ "KHR_node_visibility": { "visible": false } }), hidden);
+    // Above what is seen, without a mesh of its own.
+    let mut file = square();
+    file["nodes"] = json!([
+        { "children": [1], "extensions": { "KHR_node_visibility": { "visible": false } } }, { "mesh": 0 }
+    ]);
+    assert_eq!(read(&file).unwrap().warnings, [format!("test.gltf: {hidden}")]);
+    warned(
+        "/meshes/0/primitives/1",
+        json!({ "attributes": {} }),
+        "1 primitives of triangles have no positions and were ignored",
+    );
+    warned(
+        "/meshes/0/primitives/1",
+        json!({ "attributes": {}, "mode": 1 }),
+        "1 primitives of points or lines were ignored",
+    );
+    for extensions in
+        [json!(null), json!({}), json!({ "KHR_node_visibility": { "visible": true } }), json!({ "other": 3 })]
+    {
+        assert!(read(&changed("/nodes/0/extensions", extensions)).unwrap().warnings.is_empty());
+    }
+
+    // With the same triangles beside, compression is no matter.
+    let mut file = square();
+    file["meshes"][0]["primitives"][0]["extensions"] = json!({ "KHR_draco_mesh_compression": { "bufferView": 0 } });
+    assert!(read(&file).unwrap().warnings.is_empty());
+    for accessor in [0, 1] {
+        let mut file = file.clone();
+        file["accessors"][accessor].as_object_mut().unwrap().remove("bufferView");
+        let expected = "test.gltf: mesh 0, primitive 0: its triangles are there only as compressed by Draco \
+                        (`KHR_draco_mesh_compression`); write it again without";
+        assert_eq!(faults(read(&file)), [expected]);
+    }
+}
+
+#[test]
+fn a_triangle_with_two_bad_corners_has_one_fault() {
+    let mut bytes = buffer();
+    bytes[0..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    bytes[12..16].copy_from_slice(&f32::INFINITY.to_le_bytes());
+    let found = faults(parse_with(square().to_string().as_bytes(), &bytes));
+    let triangle = |k: u32| {
+        format!("test.gltf: node 0, mesh 0, primitive 0, triangle {k}: a coordinate is not finite; correct it")
+    };
+    assert_eq!(found, [triangle(0), triangle(1)]);
 }

@@ -385,7 +385,7 @@ fn obj_files_with_malformed_faces_can_be_read() {
     assert_eq!(loaded.scene.polygon(PolygonId(5)).shape(), Shape::Convex);
     let [warning] = &loaded.warnings[..] else { panic!("{:?}", loaded.warnings) };
     assert!(
-        warning.starts_with("bad.obj:4: ") && warning.ends_with("3 vertices or faces in all cannot be used"),
+        warning.starts_with("bad.obj:4: ") && warning.ends_with(" (faults of vertices and faces: 4 in all)"),
         "{warning}"
     );
     // Without any vertex, too.

@@ -5,7 +5,8 @@ use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 use nusselt::exact::{Sign, orient3d};
 use nusselt::scene::{
-    Axis, FaceSpec, Material, PolygonId, Scene, SceneError, SceneProblem, Shape, Side, SupportingPlane, VertexId,
+    Axis, FaceSpec, Material, OrDrop, PolygonId, Repair, Scene, SceneError, SceneProblem, Shape, Side, SupportingPlane,
+    VertexId,
 };
 use proptest::prelude::*;
 use std::collections::HashMap;
@@ -18,7 +19,11 @@ fn build(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> Result<Scene, SceneErro
 
 /// One polygon with holes.
 fn polygon(rings: &[Vec<[f64; 3]>]) -> Result<Scene, SceneError> {
-    let mut builder = Scene::builder();
+    repaired(rings, Repair::default())
+}
+
+fn repaired(rings: &[Vec<[f64; 3]>], repair: Repair) -> Result<Scene, SceneError> {
+    let mut builder = Scene::builder().repair(repair);
     let object = builder.add_object("default");
     let material = builder.add_material(Material::new("grey"));
     let rings = rings.iter().map(|ring| ring.iter().map(|&p| builder.add_vertex(DVec3::from(p))).collect()).collect();
@@ -240,6 +245,56 @@ fn holes_that_touch_are_fine_and_holes_that_cross_are_not() {
     let polygon = PolygonId(0);
     assert_eq!(problem(&[outer.clone(), crossing]), SceneProblem::SelfCrossing { polygon });
     assert_eq!(problem(&[outer, outside]), SceneProblem::HoleOutside { polygon });
+}
+
+#[test]
+fn no_hole_is_filled_in_by_another() {
+    let outer = ring(&[[0., 0.], [8., 0.], [8., 8.], [0., 8.]]);
+    let hole = ring(&[[1., 1.], [5., 1.], [5., 5.], [1., 5.]]);
+    let reversed = |ring: &[[f64; 2]]| ring.iter().rev().copied().collect::<Vec<_>>();
+    let inner = ring(&[[2., 2.], [3., 2.], [3., 3.], [2., 3.]]);
+    // With a corner, a side, or its boundary over all of a half in common.
+    let inner_at_corner = ring(&[[1., 1.], [3., 2.], [3., 3.]]);
+    let inner_at_side = ring(&[[1., 1.], [5., 1.], [3., 3.]]);
+    let half = ring(&[[1., 1.], [5., 1.], [5., 5.]]);
+    let polygon = PolygonId(0);
+    for other in [&hole, &inner, &inner_at_corner, &inner_at_side, &half] {
+        for (a, b) in [(&hole, other), (other, &hole)] {
+            for (a, b) in [(a.clone(), b.clone()), (a.clone(), reversed(b))] {
+                let error = flat(&[outer.clone(), a.clone(), b.clone()]).unwrap_err();
+                assert_eq!(error.problems, [SceneProblem::HolesOverlap { polygon }], "{a:?} {b:?}");
+            }
+        }
+    }
+    // Three times is twice too often, whatever the directions.
+    let thrice = [outer.clone(), hole.clone(), reversed(&hole), hole.clone()];
+    assert_eq!(flat(&thrice).unwrap_err().problems, [SceneProblem::HolesOverlap { polygon }]);
+    // One that goes around twice, and one whose halves run around in different directions.
+    let bow_tie = ring(&[[1., 1.], [3., 3.], [5., 5.], [5., 1.], [3., 3.], [1., 5.]]);
+    for bad in [hole.repeat(2), bow_tie] {
+        let error = flat(&[outer.clone(), bad]).unwrap_err();
+        assert_eq!(error.problems, [SceneProblem::SelfCrossing { polygon }]);
+    }
+    // Through the same point without crossing there: an hourglass of two triangles, one after the other.
+    let hourglass = ring(&[[1., 1.], [3., 3.], [1., 5.], [5., 5.], [3., 3.], [5., 1.]]);
+    assert!(flat(&[outer.clone(), hourglass]).is_ok());
+    let dropping = Repair { self_crossing: OrDrop::Drop, ..Repair::default() };
+    let lift = |ring: Vec<[f64; 2]>| ring.iter().map(|p| [p[0], p[1], 0.0]).collect();
+    let scene = repaired(&[outer, hole.clone(), hole].map(lift), dropping).unwrap();
+    assert_eq!(scene.polygon(polygon).shape(), Shape::Dropped);
+}
+
+/// Holes side by side with common sides and corners, some around the outer ring's.
+#[test]
+fn holes_that_only_touch_leave_the_rest() {
+    let outer = ring(&[[0., 0.], [8., 0.], [8., 8.], [0., 8.]]);
+    let square = |x: f64, y: f64| ring(&[[x, y], [x + 2., y], [x + 2., y + 2.], [x, y + 2.]]);
+    let mut rings = vec![outer, square(0., 0.), square(2., 2.), square(4., 2.), square(4., 4.), square(2., 4.)];
+    rings[3].reverse();
+    let scene = flat(&rings).unwrap();
+    check(&scene);
+    let sum: BigRational = scene.pieces().map(|piece| area(&scene, piece.vertices())[2].clone()).sum();
+    assert_eq!(sum, rational(2.0 * (64.0 - 5.0 * 4.0)));
 }
 
 #[test]

@@ -20,8 +20,8 @@ pub struct BspOptions {
     /// How splitting planes are chosen.
     pub planes: PlaneChoice,
     /// Building ends with an error when splits have made more fragments than this: polygons that all
-    /// pass through each other make about the square of their number. `None` stands for 64 times the
-    /// number of pieces, or 2^20 if that is more (about 0.4 GiB).
+    /// pass through each other make about the square of their number. `None` stands for 16 times the
+    /// number of pieces (about 5 KiB for each), or 2^20 if that is more (about 0.3 GiB).
     pub max_fragments: Option<usize>,
     /// Subtrees of at most this many fragments are grown apart from one another, so that threads can share the work; 0 for none. `None` stands
     /// for 1024, or a 64th of the scene's pieces if that is more. The tree divides space in the same way for any value.
@@ -38,9 +38,9 @@ pub enum BspError {
         /// The value given.
         epsilon: f64,
     },
-    /// The scene falls into too many fragments.
+    /// The scene falls into more fragments than [`BspOptions::max_fragments`].
     #[error(
-        "the scene's polygons cut each other into more than {limit} fragments; simplify it (BspOptions::max_fragments is the limit)"
+        "the scene's polygons cut each other into more than {limit} fragments; simplify it, or leave out what is not needed"
     )]
     TooManyFragments {
         /// How many are allowed.
@@ -67,7 +67,7 @@ impl SceneBsp {
         let rules = Rules {
             epsilon,
             planes: options.planes,
-            max_fragments: options.max_fragments.unwrap_or((64 * scene.piece_count()).max(1 << 20)),
+            max_fragments: options.max_fragments.unwrap_or((16 * scene.piece_count()).max(1 << 20)),
             fragments: AtomicUsize::new(scene.piece_count()),
         };
         if scene.piece_count() > rules.max_fragments {

@@ -2,7 +2,7 @@
 
 use super::error::{Faults, Place};
 use super::{Loaded, ReadError, ReadOptions};
-use crate::scene::{FaceSpec, MaterialId, ObjectId, OrDrop, Scene, SceneBuilder, SceneProblem, Shape};
+use crate::scene::{DropCause, FaceSpec, MaterialId, ObjectId, OrDrop, Scene, SceneBuilder, SceneProblem, Shape};
 use glam::DVec3;
 use std::fmt::Display;
 
@@ -14,9 +14,11 @@ pub(super) struct Draft<'a> {
     pub(super) warnings: Vec<String>,
     /// Whether malformed faces are left to the builder, which drops them.
     pub(super) drops: bool,
-    /// If they are: the place of the first vertex or face that cannot be used, what is wrong with it, and how many there are.
+    /// If they are: the place of the first fault of a vertex or a face, what is wrong, and how many there are.
     unusable: Option<(Place, String)>,
     unusable_count: usize,
+    /// The last vertex that cannot be used, in the same words.
+    bad_vertex: Option<(Place, String)>,
     has_bad_vertices: bool,
     /// A vertex for faces that cannot be used.
     stand_in: Option<usize>,
@@ -33,6 +35,7 @@ impl<'a> Draft<'a> {
             drops: options.repair.malformed == OrDrop::Drop,
             unusable: None,
             unusable_count: 0,
+            bad_vertex: None,
             has_bad_vertices: false,
             stand_in: None,
         }
@@ -50,19 +53,30 @@ impl<'a> Draft<'a> {
     }
 
     /// Notes what is wrong with a vertex: its coordinates must not be finite. Faces cannot be judged then, unless those that name
-    /// it are dropped.
+    /// it are dropped. The same fault in the same place is one, for places may be triangles.
     pub(super) fn refuse_vertex(&mut self, place: Place, what: impl Display) {
         self.has_bad_vertices |= !self.drops;
-        self.refuse(place, what);
+        let fault = (place, what.to_string());
+        if self.bad_vertex.as_ref() != Some(&fault) {
+            self.refuse(fault.0.clone(), &fault.1);
+            self.bad_vertex = Some(fault);
+        }
     }
 
     /// Notes what is wrong with a vertex or a face: a fault, unless malformed faces are dropped.
     fn refuse(&mut self, place: Place, what: impl Display) {
-        if self.drops {
-            self.unusable_count += 1;
-            self.unusable.get_or_insert_with(|| (place, what.to_string()));
-        } else {
-            self.fault(place, what);
+        if !self.drops {
+            self.faults.note_cause(DropCause::Malformed);
+            return self.fault(place, what);
+        }
+        self.unusable_count += 1;
+        let is_first = match (&self.unusable, &place) {
+            (None, _) => true,
+            (Some((Place::Line(first), _)), Place::Line(line)) => line < first,
+            _ => false,
+        };
+        if is_first {
+            self.unusable = Some((place, what.to_string()));
         }
     }
 
@@ -89,10 +103,17 @@ impl<'a> Draft<'a> {
         self.refuse(place, what);
     }
 
-    /// Adds the next face, which cannot be used for what was noted, `why` at first: it keeps its number.
-    pub(super) fn add_broken_face(&mut self, why: String, object: ObjectId, material: MaterialId) {
+    /// Adds the next face, which cannot be used for what was noted, `why` at first: it keeps its number. `rings` are its corners as far
+    /// as they are known.
+    pub(super) fn add_broken_face(
+        &mut self,
+        why: String,
+        rings: Vec<Vec<usize>>,
+        object: ObjectId,
+        material: MaterialId,
+    ) {
         if self.drops {
-            return self.builder.add_unreadable_face(object, material, why);
+            return self.builder.add_unreadable_face(FaceSpec { rings, object, material }, why);
         }
         // For the messages about the others.
         let stand_in = match self.stand_in {
@@ -124,6 +145,9 @@ impl<'a> Draft<'a> {
             Ok(_) => return Err(self.into_error()),
             Err(error) => {
                 for problem in &error.problems {
+                    if let Some(cause) = problem.dropped_by() {
+                        self.faults.note_cause(cause);
+                    }
                     let (file, place) = match problem {
                         SceneProblem::BadMaterial { material: id, .. } => material(*id as usize),
                         _ => problem.polygon().map(|polygon| (self.name.to_owned(), face(polygon.index()))),
@@ -142,7 +166,7 @@ impl<'a> Draft<'a> {
         }
         if let Some((place, what)) = self.unusable.take() {
             let count = self.unusable_count;
-            self.warn(&place, format_args!("{what}; {count} vertices or faces in all cannot be used"));
+            self.warn(&place, format_args!("{what} (faults of vertices and faces: {count} in all)"));
         }
         if scene.polygon_count() == 0 {
             self.warn(&Place::File, "there are no faces");

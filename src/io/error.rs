@@ -1,5 +1,6 @@
 //! What can go wrong when a scene is read.
 
+use crate::scene::DropCause;
 use std::fmt;
 use std::path::PathBuf;
 
@@ -91,6 +92,7 @@ impl fmt::Display for Fault {
 pub struct Faults {
     kept: Vec<Fault>,
     count: usize,
+    causes: Vec<DropCause>,
 }
 
 impl Faults {
@@ -105,6 +107,18 @@ impl Faults {
         if self.kept.len() < Self::KEPT {
             self.kept.push(Fault { file: file.to_owned(), place, what: what.to_string() });
         }
+    }
+
+    /// Notes that a fault would have been none with the policy that drops such faces.
+    pub(crate) fn note_cause(&mut self, cause: DropCause) {
+        if !self.causes.contains(&cause) {
+            self.causes.push(cause);
+        }
+    }
+
+    /// The policies of a [`Repair`](crate::scene::Repair) that drop faces with faults like some of these.
+    pub fn droppable(&self) -> &[DropCause] {
+        &self.causes
     }
 
     /// Puts them in order of file and line; what is not in a line comes first, as it was noted.

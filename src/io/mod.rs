@@ -85,8 +85,8 @@ pub enum Origin {
     File,
     /// v x scale, rounded once: the same unit, but a local origin. Numbers are small, so they keep more digits.
     Local,
-    /// v itself: nothing is rounded, what is planar stays planar, and the unit is the file's scale (often a millimetre),
-    /// which must be the same along all axes.
+    /// v itself: integers up to 2^53 are not rounded, what is planar stays planar, and the unit is the file's scale (often a millimetre),
+    /// which must be the same along all axes. Templates, and vertices that are no integers, are rounded all the same.
     Integers,
 }
 

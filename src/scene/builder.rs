@@ -90,9 +90,10 @@ impl SceneBuilder {
     }
 
     /// Adds a face that cannot be read, for that reason: it keeps its number, and is a problem unless malformed faces are dropped.
-    pub fn add_unreadable_face(&mut self, object: ObjectId, material: MaterialId, why: String) {
+    /// Its rings are what is known of it, if anything is: they tell how large it is.
+    pub fn add_unreadable_face(&mut self, face: FaceSpec, why: String) {
         self.unreadable.insert(self.faces.len(), why);
-        self.add_face(FaceSpec { rings: Vec::new(), object, material });
+        self.add_face(face);
     }
 
     /// Adds a mesh of simple faces in one go: object `default`, one material.
@@ -211,9 +212,10 @@ impl SceneBuilder {
     fn used_vertices(&self) -> Vec<bool> {
         let is_fine = |&vertex: &usize| self.vertices.get(vertex).is_some_and(|p| p.is_finite());
         let mut used = vec![false; self.vertices.len()];
-        for face in &self.faces {
+        for (index, face) in self.faces.iter().enumerate() {
+            let is_read = || !self.unreadable.contains_key(&index);
             let is_whole = || face.rings.iter().all(|ring| ring.len() >= 3 && ring.iter().all(is_fine));
-            if self.repair.malformed == OrDrop::Reject || is_whole() {
+            if self.repair.malformed == OrDrop::Reject || is_read() && is_whole() {
                 for &vertex in face.rings.iter().flatten().filter(|vertex| is_fine(vertex)) {
                     used[vertex] = true;
                 }
@@ -232,22 +234,24 @@ impl SceneBuilder {
         let counts =
             Counts { vertices: self.vertices.len(), objects: self.objects.len(), materials: self.materials.len() };
         let mut found = Vec::new();
-        let is_sound = check_face(polygon, face, counts, &mut found);
+        let mut is_sound = check_face(polygon, face, counts, &mut found);
+        // Names of objects and materials are no matter of the face's shape: they are problems all the same.
+        let is_shape = |problem: &SceneProblem| {
+            use SceneProblem::{TooFewVertices, UnknownVertex, Unreadable};
+            matches!(problem, TooFewVertices { .. } | UnknownVertex { .. } | Unreadable { .. })
+        };
         if let Some(why) = self.unreadable.get(&polygon.index()) {
             let unreadable = SceneProblem::Unreadable { polygon, what: why.clone() };
-            found.retain(|problem| !matches!(problem, SceneProblem::TooFewVertices { .. }));
+            // That says it all.
+            found.retain(|problem| !is_shape(problem));
             found.insert(0, unreadable);
+            is_sound = false;
         }
         let infinite = face.rings.iter().flatten().find(|&&v| self.vertices.get(v).is_some_and(|p| !p.is_finite()));
         if self.repair.malformed == OrDrop::Reject || (is_sound && infinite.is_none()) {
             problems.extend(found);
             return (is_sound && infinite.is_none()).then_some(Ok(()));
         }
-        // Names of objects and materials are no matter of the face's shape: they are problems all the same.
-        let is_shape = |problem: &SceneProblem| {
-            use SceneProblem::{TooFewVertices, UnknownVertex, Unreadable};
-            matches!(problem, TooFewVertices { .. } | UnknownVertex { .. } | Unreadable { .. })
-        };
         let (shape, names): (Vec<_>, Vec<_>) = found.into_iter().partition(is_shape);
         problems.extend(names);
         let infinite = infinite.map(|&vertex| SceneProblem::NotFinite { vertex });

@@ -90,6 +90,7 @@ impl<'a> Judge<'a> {
         let problem = match fault {
             Fault::Crossing => SceneProblem::SelfCrossing { polygon },
             Fault::HoleOutside => SceneProblem::HoleOutside { polygon },
+            Fault::HolesOverlap => SceneProblem::HolesOverlap { polygon },
             Fault::TooMuchWork => SceneProblem::TooMuchWork { polygon },
             Fault::OutOfRange => SceneProblem::OutOfRange { polygon, limit: RANGE },
         };

@@ -1,6 +1,6 @@
 //! What can be wrong with a scene.
 
-use super::PolygonId;
+use super::{DropCause, PolygonId};
 
 /// One thing that is wrong with the input of a [`SceneBuilder`](super::SceneBuilder).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -60,6 +60,14 @@ pub enum SceneProblem {
     /// A hole that is not inside of the outer ring.
     #[error("polygon {polygon} has a hole outside of its outer ring; remove it or make it a polygon")]
     HoleOutside {
+        /// The polygon.
+        polygon: PolygonId,
+    },
+    /// A hole that overlaps another one, lies in it or is the same: what is inside is not known.
+    #[error(
+        "polygon {polygon} has holes that overlap, or one in another; merge them, or make what is in a hole a polygon"
+    )]
+    HolesOverlap {
         /// The polygon.
         polygon: PolygonId,
     },
@@ -145,11 +153,30 @@ impl SceneProblem {
             | Self::UnknownObject { polygon, .. }
             | Self::SelfCrossing { polygon }
             | Self::HoleOutside { polygon }
+            | Self::HolesOverlap { polygon }
             | Self::TooMuchWork { polygon }
             | Self::NonPlanar { polygon }
             | Self::ZeroArea { polygon }
             | Self::Duplicate { polygon, .. }
             | Self::OutOfRange { polygon, .. } => Some(polygon),
+            _ => None,
+        }
+    }
+
+    /// The policy of a [`Repair`](super::Repair) that drops faces with this problem, if there is one.
+    pub fn dropped_by(&self) -> Option<DropCause> {
+        match self {
+            Self::NotFinite { .. }
+            | Self::TooFewVertices { .. }
+            | Self::UnknownVertex { .. }
+            | Self::Unreadable { .. } => Some(DropCause::Malformed),
+            Self::SelfCrossing { .. }
+            | Self::HoleOutside { .. }
+            | Self::HolesOverlap { .. }
+            | Self::TooMuchWork { .. }
+            | Self::OutOfRange { .. } => Some(DropCause::SelfCrossing),
+            Self::NonPlanar { .. } => Some(DropCause::NonPlanar),
+            Self::Duplicate { .. } => Some(DropCause::Duplicate),
             _ => None,
         }
     }

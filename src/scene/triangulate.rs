@@ -1,7 +1,7 @@
 //! Triangulation of polygons in the plane, with holes, on their own vertices only.
 //!
 //! The vertices go into a Delaunay triangulation first, the boundary becomes constraint edges after
-//! that, and a flood from the outside counts how often the boundary winds around every triangle.
+//! that, and a flood from the outside counts how often the outer ring and each hole wind around every triangle.
 //! All decisions are exact signs. No vertex is ever made: a boundary that would need one crosses
 //! itself and is refused. Vertices and edges go in in a shuffled order (always the same), so that
 //! the expected number of edges flipped out of the way is O(n log n) (Shewchuk and Brown, "Fast segment insertion and
@@ -15,6 +15,7 @@ use spade::{
     ConstrainedDelaunayTriangulation, HasPosition, HierarchyHintGenerator, HintGenerator, LastUsedVertexHintGenerator,
     LineIntersectionIterator, Point2, Triangulation,
 };
+use std::collections::HashMap;
 
 /// Why there is no triangulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,6 +24,8 @@ pub(super) enum Fault {
     Crossing,
     /// A hole is not inside of the outer ring.
     HoleOutside,
+    /// Holes have points in common that are not on their boundaries.
+    HolesOverlap,
     /// The coordinates differ by more than [`RANGE`] powers of two.
     OutOfRange,
     /// The boundary lies so that the work would grow with the square of its length.
@@ -43,7 +46,7 @@ const MANY: usize = 64;
 ///
 /// The triangles run around the way the outer ring does. There are none if the ring has no area.
 /// Points must differ from one another. Rings may touch themselves and one another in vertices and
-/// along edges (a doubled edge is a slit); holes may run either way.
+/// along edges (a doubled edge is a slit); holes may run either way, and no two have an inner point in common.
 pub(super) fn triangulate(points: &[DVec2], rings: &[Vec<u32>]) -> Result<Vec<[u32; 3]>, Fault> {
     let points = scaled(points)?;
     let space: Vec<_> = points.iter().map(|p| p.extend(0.0)).collect();
@@ -94,19 +97,50 @@ impl HasPosition for Corner {
     }
 }
 
-/// How the boundary runs along one edge, or lies around one triangle.
+/// A ring and how often it runs along an edge or around a triangle, counted with its direction. Ring 0 is the outer one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Run {
+    ring: u32,
+    times: i32,
+}
+
+/// What lies around one triangle: of holes at most one does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 struct Winding {
-    /// The outer ring, counted with its direction.
     outer: i32,
-    /// Whether the holes pass an odd number of times.
-    hole: bool,
+    hole: Option<Run>,
+}
+
+impl Winding {
+    /// What lies around the triangle on the other side of an edge along which these rings run.
+    fn beyond(self, along: &[(usize, Run)], forwards: bool) -> Result<Self, Fault> {
+        let mut there = Self { outer: self.outer, hole: None };
+        let (passed, kept) = match self.hole {
+            Some(hole) if along.iter().any(|(_, run)| run.ring == hole.ring) => (self.hole, None),
+            hole => (None, hole),
+        };
+        let along = along.iter().map(|&(_, run)| Run { times: if forwards { -run.times } else { run.times }, ..run });
+        for Run { ring, times } in along.chain(kept) {
+            if ring == 0 {
+                there.outer += times;
+                continue;
+            }
+            let times = times + passed.filter(|hole| hole.ring == ring).map_or(0, |hole| hole.times);
+            if times.abs() > 1 {
+                return Err(Fault::Crossing);
+            }
+            if times != 0 && there.hole.replace(Run { ring, times }).is_some() {
+                return Err(Fault::HolesOverlap);
+            }
+        }
+        Ok(there)
+    }
 }
 
 struct Mesh<L: HintGenerator<f64>> {
     cdt: ConstrainedDelaunayTriangulation<Corner, (), (), (), L>,
-    /// For every undirected edge what runs along its normal direction.
-    along: Vec<Winding>,
+    /// What runs along the normal direction of undirected edges, in ascending order of the edges.
+    along: Vec<(usize, Run)>,
 }
 
 impl<L: HintGenerator<f64>> Mesh<L> {
@@ -129,38 +163,35 @@ impl<L: HintGenerator<f64>> Mesh<L> {
         if cdt.num_vertices() != points.len() {
             return Err(Fault::Crossing);
         }
-        let along = vec![Winding::default(); cdt.num_undirected_edges()];
-        let mut mesh = Self { cdt, along };
+        let mut mesh = Self { cdt, along: Vec::new() };
         mesh.add_boundary(&handles, rings)?;
+        mesh.sum_up();
         Ok(mesh)
     }
 
     fn add_boundary(&mut self, handles: &[FixedVertexHandle], rings: &[Vec<u32>]) -> Result<(), Fault> {
         let mut visits = vec![0_u32; handles.len()];
         let mut edges = Vec::new();
-        for (ring, outer) in rings.iter().zip(std::iter::once(1).chain(std::iter::repeat(0))) {
+        for (number, ring) in rings.iter().enumerate() {
             for (k, &from) in ring.iter().enumerate() {
                 visits[from as usize] += 1;
-                edges.push((from, ring[(k + 1) % ring.len()], Winding { outer, hole: outer == 0 }));
+                edges.push((from, ring[(k + 1) % ring.len()], number as u32));
             }
         }
         shuffle(&mut edges);
         let mut trace = Trace { passed: vec![None; handles.len()], budget: 1024 * edges.len() + (1 << 24) };
-        for (from, to, run) in edges {
+        for (from, to, ring) in edges {
             // An edge is searched by turning around its first vertex: take the less busy one.
-            let (from, to, outer) = if visits[from as usize] <= visits[to as usize] {
-                (from, to, run.outer)
-            } else {
-                (to, from, -run.outer)
-            };
+            let (from, to, times) =
+                if visits[from as usize] <= visits[to as usize] { (from, to, 1) } else { (to, from, -1) };
             let ends = [handles[from as usize], handles[to as usize]];
-            self.add_edge(ends, Winding { outer, ..run }, &mut trace)?;
+            self.add_edge(ends, Run { ring, times }, &mut trace)?;
         }
         Ok(())
     }
 
     /// Adds one edge of the boundary; it becomes several if it runs through vertices.
-    fn add_edge(&mut self, [from, to]: [FixedVertexHandle; 2], run: Winding, trace: &mut Trace) -> Result<(), Fault> {
+    fn add_edge(&mut self, [from, to]: [FixedVertexHandle; 2], run: Run, trace: &mut Trace) -> Result<(), Fault> {
         let mut at = from;
         let mut before = None;
         while at != to {
@@ -179,14 +210,24 @@ impl<L: HintGenerator<f64>> Mesh<L> {
                 }
                 let undirected = edge.as_undirected();
                 let forwards = self.cdt.directed_edge(undirected.as_directed()).from().fix() == at;
-                let along = &mut self.along[undirected.index()];
-                along.outer += if forwards { run.outer } else { -run.outer };
-                along.hole ^= run.hole;
+                let times = if forwards { run.times } else { -run.times };
+                self.along.push((undirected.index(), Run { times, ..run }));
                 before = Some(at);
                 at = next;
             }
         }
         Ok(())
+    }
+
+    /// Counts together what one ring does along one edge, and leaves out what it takes back.
+    fn sum_up(&mut self) {
+        self.along.sort_unstable_by_key(|&(edge, run)| (edge, run.ring));
+        self.along.dedup_by(|(edge, run), (known, sum)| {
+            let same = (*edge, run.ring) == (*known, sum.ring);
+            sum.times += if same { run.times } else { 0 };
+            same
+        });
+        self.along.retain(|(_, run)| run.times != 0);
     }
 
     /// How the boundary lies around each triangle, by index of the face.
@@ -200,9 +241,8 @@ impl<L: HintGenerator<f64>> Mesh<L> {
             let edge = self.cdt.directed_edge(edge);
             let Some(here) = windings[edge.face().fix().index()] else { continue };
             let beyond = edge.rev().face();
-            let along =
-                self.along_directed(edge.fix().as_undirected(), edge.fix().as_undirected().as_directed() == edge.fix());
-            let there = Winding { outer: here.outer - along.outer, hole: here.hole ^ along.hole };
+            let undirected = edge.fix().as_undirected();
+            let there = here.beyond(self.runs_along(undirected), undirected.as_directed() == edge.fix())?;
             match &mut windings[beyond.fix().index()] {
                 Some(known) if *known == there => {}
                 Some(_) => return Err(Fault::Crossing),
@@ -216,19 +256,26 @@ impl<L: HintGenerator<f64>> Mesh<L> {
         Ok(windings)
     }
 
-    fn along_directed(&self, edge: FixedUndirectedEdgeHandle, forwards: bool) -> Winding {
-        let along = self.along[edge.index()];
-        Winding { outer: if forwards { along.outer } else { -along.outer }, ..along }
+    fn runs_along(&self, edge: FixedUndirectedEdgeHandle) -> &[(usize, Run)] {
+        let start = self.along.partition_point(|&(known, _)| known < edge.index());
+        let rest = &self.along[start..];
+        &rest[..rest.iter().take_while(|&&(known, _)| known == edge.index()).count()]
     }
 
     fn triangles(&self) -> Result<Vec<[u32; 3]>, Fault> {
         let windings = self.windings()?;
         let mut side = 0;
+        let mut sides_of_holes = HashMap::new();
         let mut triangles = Vec::new();
         for face in self.cdt.inner_faces() {
             let Some(winding) = windings[face.fix().index()] else { continue };
+            if let Some(Run { ring, times }) = winding.hole
+                && *sides_of_holes.entry(ring).or_insert(times) != times
+            {
+                return Err(Fault::Crossing);
+            }
             if winding.outer == 0 {
-                if winding.hole {
+                if winding.hole.is_some() {
                     return Err(Fault::HoleOutside);
                 }
                 continue;
@@ -237,7 +284,7 @@ impl<L: HintGenerator<f64>> Mesh<L> {
                 return Err(Fault::Crossing);
             }
             side = winding.outer;
-            if !winding.hole {
+            if winding.hole.is_none() {
                 triangles.push(face.vertices().map(|corner| corner.data().index));
             }
         }

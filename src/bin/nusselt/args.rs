@@ -50,7 +50,7 @@ pub(crate) struct Loading {
     #[arg(long, value_name = "SPEC", default_value_t, value_parser = parse_repair, hide_default_value = true)]
     pub(crate) repair: Repair,
     /// Take this level of detail of city objects, like 2 or 2.2 (CityJSON) [default: the highest of each]
-    #[arg(long, value_name = "L", allow_hyphen_values = true)]
+    #[arg(long, value_name = "L", value_parser = parse_lod, allow_hyphen_values = true)]
     lod: Option<String>,
     /// Take coordinates as they are in the reference system of the file, without its translation (local), or as the
     /// integers that the file has (CityJSON)
@@ -102,6 +102,11 @@ fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
 fn parse_number(text: &str) -> Result<f64, String> {
     let number: f64 = text.trim().parse().map_err(|_| format!("{:?} is not a number", text.trim()))?;
     if number.is_finite() { Ok(number) } else { Err(format!("{} is not finite", text.trim())) }
+}
+
+/// It stays as it is written, for messages.
+fn parse_lod(text: &str) -> Result<String, String> {
+    parse_number(text).map(|_| text.to_owned())
 }
 
 fn parse_epsilon(text: &str) -> Result<f64, String> {

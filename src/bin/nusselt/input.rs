@@ -4,11 +4,11 @@ use crate::args::{Common, Loading, Order, Way};
 use crate::failure::Failure;
 use crate::output::keep;
 use crate::repairs::changes;
-use nusselt::bsp::{BspOptions, SceneBsp};
+use nusselt::bsp::{BspError, BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
 use nusselt::contour::SceneOrder;
-use nusselt::io::read_scene;
-use nusselt::scene::Scene;
+use nusselt::io::{ReadError, read_scene};
+use nusselt::scene::{DropCause, OrDrop, Repair, Scene};
 use std::path::Path;
 use std::time::Instant;
 
@@ -21,7 +21,7 @@ pub(crate) fn load<'a>(
 ) -> Result<(Scene, f64), Failure> {
     keep(&[path.to_owned()], outputs.clone())?;
     let start = Instant::now();
-    let loaded = read_scene(path, &loading.options()).map_err(|error| Failure::Work(error.to_string()))?;
+    let loaded = read_scene(path, &loading.options()).map_err(|error| refused(&error, &loading.repair))?;
     let seconds = start.elapsed().as_secs_f64();
     keep(&loaded.files, outputs)?;
     for warning in &loaded.warnings {
@@ -33,18 +33,52 @@ pub(crate) fn load<'a>(
     Ok((loaded.scene, seconds))
 }
 
+/// What is wrong with a file, and with which repair its broken faces would be left out.
+fn refused(error: &ReadError, repair: &Repair) -> Failure {
+    let mut dropping = *repair;
+    if let ReadError::Invalid(faults) = error {
+        for cause in faults.droppable() {
+            match cause {
+                DropCause::Malformed => dropping.malformed = OrDrop::Drop,
+                DropCause::SelfCrossing => dropping.self_crossing = OrDrop::Drop,
+                // These are refused only if one asks for it.
+                DropCause::NonPlanar | DropCause::Duplicate => {}
+            }
+        }
+    }
+    if dropping == *repair {
+        return Failure::Work(error.to_string());
+    }
+    Failure::Work(format!("{error}\n--repair {dropping} leaves out such faces, and takes the rest"))
+}
+
 /// The 3D BSP of the scene of a file, and how many seconds building it took.
 pub(crate) fn build(path: &Path, scene: &Scene, order: &Order) -> Result<(SceneBsp, f64), Failure> {
+    let (bsp, seconds) = try_to_build(scene, order);
+    Ok((bsp.map_err(|error| Failure::about(path, &error))?, seconds))
+}
+
+/// The 3D BSP of a scene, and how many seconds building it, or trying to, took.
+pub(crate) fn try_to_build(scene: &Scene, order: &Order) -> (Result<SceneBsp, BspError>, f64) {
     let start = Instant::now();
     let options = BspOptions { epsilon: order.epsilon, ..BspOptions::default() };
-    let bsp = SceneBsp::build(scene, &options).map_err(|error| Failure::about(path, &error))?;
-    Ok((bsp, start.elapsed().as_secs_f64()))
+    let bsp = SceneBsp::build(scene, &options);
+    (bsp, start.elapsed().as_secs_f64())
 }
 
 /// What gives the order of the polygons of the scene of a file, and how many seconds building it took.
 pub(crate) fn build_order(path: &Path, scene: &Scene, order: &Order, way: Way) -> Result<(SceneOrder, f64), Failure> {
     match way {
-        Way::Bsp => build(path, scene, order).map(|(bsp, seconds)| (bsp.into(), seconds)),
+        Way::Bsp => {
+            let (bsp, seconds) = try_to_build(scene, order);
+            let bsp = bsp.map_err(|error| match error {
+                BspError::TooManyFragments { .. } => {
+                    Failure::about(path, &format_args!("{error}, or take --way boxes without --epsilon"))
+                }
+                _ => Failure::about(path, &error),
+            })?;
+            Ok((bsp.into(), seconds))
+        }
         Way::Boxes => {
             let start = Instant::now();
             Ok((SceneBvh::build(scene).into(), start.elapsed().as_secs_f64()))

@@ -229,15 +229,10 @@ impl<'a> Assembly<'a, '_> {
         let model = self.model;
         let templates = model.templates.as_ref().map_or(&[][..], |templates| &templates.vertices);
         let count = if placing.is_some() { templates.len() } else { model.vertices.len() };
-        let mut rings = match surface.rings(count) {
-            Ok(rings) => rings,
-            Err(what) => {
-                let place = place(model, &self.runs, number);
-                self.draft.refuse_face(place, &what);
-                self.draft.add_broken_face(what, object, material);
-                return;
-            }
-        };
+        let (mut rings, broken) = surface.rings(count);
+        if let Some(what) = &broken {
+            self.draft.refuse_face(place(model, &self.runs, number), what);
+        }
         if let Some(placing) = placing {
             for ring in &mut rings {
                 for corner in &mut *ring {
@@ -249,7 +244,10 @@ impl<'a> Assembly<'a, '_> {
                 }
             }
         }
-        self.draft.add_face(rings, object, material);
+        match broken {
+            None => self.draft.add_face(rings, object, material),
+            Some(why) => self.draft.add_broken_face(why, rings, object, material),
+        }
     }
 
     fn finish(mut self, wanted: Option<Lod>) -> Result<Loaded, ReadError> {

@@ -139,8 +139,12 @@ impl Surface<'_> {
         rings.map(|ring| ring.list().map_or(0, <[Nested]>::len) as u64).sum::<u64>().max(1)
     }
 
-    /// Its rings as indices below a count; otherwise what is wrong.
-    pub(super) fn rings(&self, count: usize) -> Result<Vec<Vec<usize>>, String> {
+    /// Its rings as indices below a count, as far as they are, and what is wrong with the rest.
+    pub(super) fn rings(&self, count: usize) -> (Vec<Vec<usize>>, Option<String>) {
+        let mut broken = None;
+        let mut note = |what| {
+            broken.get_or_insert(what);
+        };
         let index = |corner: &Nested| match corner {
             Nested::Index(index) => {
                 let known = usize::try_from(*index).ok().filter(|&index| index < count);
@@ -148,16 +152,22 @@ impl Surface<'_> {
             }
             _ => Err("its rings are not lists of indices".to_owned()),
         };
-        let ring = |ring: &Nested| match ring.list() {
-            Some(corners) if corners.len() < 3 => {
-                Err(format!("a ring takes at least 3 vertices, but here are {}", corners.len()))
-            }
-            Some(corners) => corners.iter().map(index).collect(),
-            None => Err("it is not a list of rings".to_owned()),
-        };
-        match self.rings.list() {
-            None | Some([]) => Err("it is not a list of rings".to_owned()),
-            Some(rings) => rings.iter().map(ring).collect(),
+        let mut rings = Vec::new();
+        let lists = self.rings.list().unwrap_or_default();
+        if lists.is_empty() {
+            note("it is not a list of rings".to_owned());
         }
+        for list in lists {
+            let Some(corners) = list.list() else {
+                note("it is not a list of rings".to_owned());
+                continue;
+            };
+            if corners.len() < 3 {
+                note(format!("a ring takes at least 3 vertices, but here are {}", corners.len()));
+            }
+            let corners = corners.iter().filter_map(|corner| index(corner).map_err(&mut note).ok());
+            rings.push(corners.collect());
+        }
+        (rings, broken)
     }
 }

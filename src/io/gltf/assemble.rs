@@ -5,8 +5,8 @@ use super::super::error::Place;
 use super::super::{Loaded, ReadError};
 use super::accessor::{Elements, buffers_of};
 use super::buffers::Buffers;
-use super::graph::{Instance, instances};
-use super::json::Root;
+use super::graph::{Instance, Walk, walk};
+use super::json::{Primitive, Root};
 use super::material::{has_texture, material};
 use super::primitive::Triangles;
 use crate::exact::orient3d;
@@ -23,8 +23,8 @@ pub(super) fn assemble(
     mut load: impl FnMut(&str) -> io::Result<Vec<u8>>,
     mut draft: Draft<'_>,
 ) -> Result<Loaded, ReadError> {
-    let instances = match instances(root) {
-        Ok(instances) => instances,
+    let Walk { instances, is_reached } = match walk(root) {
+        Ok(walk) => walk,
         Err((item, what)) => {
             draft.fault(Place::Item(item), what);
             return Err(draft.into_error());
@@ -53,7 +53,7 @@ pub(super) fn assemble(
     if !draft.faults.is_empty() {
         return Err(draft.into_error());
     }
-    warn(root, &instances, &meshes, &mut draft);
+    warn(root, &instances, &is_reached, &meshes, &mut draft);
     let mut builder = Builder {
         root,
         triangles: &triangles,
@@ -136,10 +136,11 @@ fn triangles<'a>(
     draft: &mut Draft<'_>,
 ) -> Meshes<'a> {
     let mut list: Meshes<'a> = root.meshes.iter().map(|_| Vec::new()).collect();
-    let mut ignored = 0_usize;
+    let (mut ignored, mut without_positions) = (0_usize, 0_usize);
     for &mesh in meshes {
         for (number, primitive) in root.meshes[mesh].primitives.iter().enumerate() {
-            let triangles = Triangles::new(primitive, elements).unwrap_or_else(|what| {
+            let triangles = check_form(root, primitive).and_then(|()| Triangles::new(primitive, elements));
+            let triangles = triangles.unwrap_or_else(|what| {
                 draft.fault(Place::Item(format!("mesh {mesh}, primitive {number}")), what);
                 None
             });
@@ -149,14 +150,35 @@ fn triangles<'a>(
                 let what = format!("it takes a material that is not there; the file has {count}");
                 draft.fault(Place::Item(format!("mesh {mesh}, primitive {number}")), what);
             }
-            ignored += usize::from(triangles.is_none());
+            *(if primitive.mode() < 4 { &mut ignored } else { &mut without_positions }) +=
+                usize::from(triangles.is_none());
             list[mesh].push(triangles);
         }
     }
     if ignored > 0 && draft.faults.is_empty() {
         draft.warn(&Place::File, format_args!("{ignored} primitives of points or lines were ignored"));
     }
+    if without_positions > 0 && draft.faults.is_empty() {
+        let what = format_args!("{without_positions} primitives of triangles have no positions and were ignored");
+        draft.warn(&Place::File, what);
+    }
     list
+}
+
+/// Refuses a primitive whose triangles are there in compressed form only.
+fn check_form(root: &Root, primitive: &Primitive) -> Result<(), String> {
+    if primitive.extensions.draco.is_none() {
+        return Ok(());
+    }
+    let is_there = |&accessor: &usize| {
+        let accessor = root.accessors.get(accessor);
+        accessor.is_none_or(|accessor| accessor.buffer_view.is_some() || accessor.sparse.is_some())
+    };
+    if [primitive.attributes.position, primitive.indices].iter().flatten().all(is_there) {
+        return Ok(());
+    }
+    Err("its triangles are there only as compressed by Draco (`KHR_draco_mesh_compression`); write it again without"
+        .to_owned())
 }
 
 /// Checks that the instances of meshes do not unfold to too many triangles.
@@ -176,7 +198,7 @@ fn check_size(instances: &[Instance], meshes: &Meshes<'_>, mut limit: Unfolding)
 }
 
 /// Says what is ignored.
-fn warn(root: &Root, instances: &[Instance], meshes: &[usize], draft: &mut Draft<'_>) {
+fn warn(root: &Root, instances: &[Instance], is_reached: &[bool], meshes: &[usize], draft: &mut Draft<'_>) {
     let primitives = || meshes.iter().flat_map(|&mesh| &root.meshes[mesh].primitives);
     let mut is_used = vec![false; root.materials.len()];
     for material in primitives().filter_map(|primitive| primitive.material) {
@@ -192,6 +214,14 @@ fn warn(root: &Root, instances: &[Instance], meshes: &[usize], draft: &mut Draft
         (
             instances.iter().filter(|instance| root.nodes[instance.node].skin.is_some()).count(),
             "nodes have skins, which are not applied",
+        ),
+        (
+            instances.iter().filter(|instance| root.nodes[instance.node].extensions.instancing.is_some()).count(),
+            "nodes are instanced by EXT_mesh_gpu_instancing, which is not applied: each is there once, where it is itself",
+        ),
+        (
+            root.nodes.iter().zip(is_reached).filter(|(node, is_reached)| **is_reached && node.is_hidden()).count(),
+            "nodes are not to be visible by KHR_node_visibility, which is not applied: they are there",
         ),
     ];
     for (count, what) in counts.into_iter().filter(|(count, _)| *count > 0) {
@@ -239,20 +269,20 @@ impl Builder<'_, '_> {
             let is_mirrored = orient3d(DVec3::ZERO, axes.x_axis, axes.y_axis, axes.z_axis).is_negative();
             for k in 0..triangles.count {
                 let place = || run.place(run.first + k);
-                match triangles.corners(k) {
-                    Ok(corners) => {
-                        let position = |corner| transform.transform_point3(triangles.positions().position(corner));
-                        let mut ring = corners.map(|corner| self.draft.add_vertex(position(corner), place));
-                        if is_mirrored {
-                            ring.swap(0, 1);
-                        }
-                        self.draft.add_face(vec![ring.to_vec()], object, material);
-                    }
-                    Err(unknown) => {
-                        let count = triangles.positions().count;
+                let mut corners = triangles.corners(k);
+                if is_mirrored {
+                    corners.swap(0, 1);
+                }
+                let count = triangles.positions().count;
+                let position = |corner| transform.transform_point3(triangles.positions().position(corner));
+                let known = corners.into_iter().filter(|&corner| corner < count);
+                let ring = known.map(|corner| self.draft.add_vertex(position(corner), place)).collect();
+                match corners.into_iter().find(|&corner| corner >= count) {
+                    None => self.draft.add_face(vec![ring], object, material),
+                    Some(unknown) => {
                         let what = format!("there is no vertex {unknown}; the primitive has {count}");
                         self.draft.refuse_face(place(), &what);
-                        self.draft.add_broken_face(what, object, material);
+                        self.draft.add_broken_face(what, vec![ring], object, material);
                     }
                 }
             }

@@ -12,11 +12,19 @@ pub(super) struct Instance {
     pub(super) transform: DAffine3,
 }
 
+/// What is in the default scene.
+#[derive(Debug)]
+pub(super) struct Walk {
+    pub(super) instances: Vec<Instance>,
+    /// For every node of the file whether it is part of the scene.
+    pub(super) is_reached: Vec<bool>,
+}
+
 /// Every mesh of the default scene, depth-first; otherwise the node that is at fault, and why.
 ///
 /// The default scene is `scene`, else the first. Every node may be reached once, so that this takes time in
 /// proportion to the number of nodes.
-pub(super) fn instances(root: &Root) -> Result<Vec<Instance>, (String, String)> {
+pub(super) fn walk(root: &Root) -> Result<Walk, (String, String)> {
     let number = root.scene.unwrap_or(0);
     let Some(scene) = root.scenes.get(number) else {
         if root.scene.is_none() {
@@ -50,7 +58,7 @@ pub(super) fn instances(root: &Root) -> Result<Vec<Instance>, (String, String)> 
         }
         pending.extend(node.children.iter().rev().map(|&child| (child, transform)));
     }
-    Ok(instances)
+    Ok(Walk { instances, is_reached })
 }
 
 /// The transform of a node in its parent.

@@ -93,6 +93,28 @@ pub(super) struct Node {
     pub(super) translation: Option<[f64; 3]>,
     pub(super) rotation: Option<[f64; 4]>,
     pub(super) scale: Option<[f64; 3]>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(super) extensions: NodeExtensions,
+}
+
+impl Node {
+    /// True if it is not to be seen, and what hangs on it is not.
+    pub(super) fn is_hidden(&self) -> bool {
+        self.extensions.visibility.as_ref().is_some_and(|visibility| visibility.visible == Some(false))
+    }
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct NodeExtensions {
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub(super) instancing: Option<serde::de::IgnoredAny>,
+    #[serde(rename = "KHR_node_visibility")]
+    visibility: Option<Visibility>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Visibility {
+    visible: Option<bool>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -109,6 +131,14 @@ pub(super) struct Primitive {
     mode: Option<u32>,
     #[serde(default, deserialize_with = "or_default")]
     pub(super) targets: Vec<serde::de::IgnoredAny>,
+    #[serde(default, deserialize_with = "or_default")]
+    pub(super) extensions: PrimitiveExtensions,
+}
+
+#[derive(Debug, Default, Deserialize)]
+pub(super) struct PrimitiveExtensions {
+    #[serde(rename = "KHR_draco_mesh_compression")]
+    pub(super) draco: Option<serde::de::IgnoredAny>,
 }
 
 impl Primitive {

@@ -53,19 +53,14 @@ impl<'a> Triangles<'a> {
         Ok(Some(Self { mode, indices, positions, count }))
     }
 
-    /// The positions that are the corners of the k-th triangle, counter-clockwise seen from its front; otherwise the one
-    /// that is not there.
-    pub(super) fn corners(&self, k: usize) -> Result<[usize; 3], usize> {
+    /// The positions that are the corners of the k-th triangle, counter-clockwise seen from its front, there or not.
+    pub(super) fn corners(&self, k: usize) -> [usize; 3] {
         let corners = match self.mode {
             Mode::Triangles => [3 * k, 3 * k + 1, 3 * k + 2],
             Mode::Strip => [k, k + 1 + k % 2, k + 2 - k % 2],
             Mode::Fan => [k + 1, k + 2, 0],
         };
-        let corners = corners.map(|corner| self.indices.map_or(corner, |indices| indices.index(corner)));
-        match corners.into_iter().find(|&corner| corner >= self.positions.count) {
-            Some(unknown) => Err(unknown),
-            None => Ok(corners),
-        }
+        corners.map(|corner| self.indices.map_or(corner, |indices| indices.index(corner)))
     }
 
     pub(super) fn positions(&self) -> &'a Elements<'a> {

@@ -57,6 +57,10 @@ pub fn parse(
     load: impl FnMut(&str) -> io::Result<Vec<u8>>,
 ) -> Result<Loaded, ReadError> {
     let mut reader = Reader::new(name, options, load);
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        reader.draft.fault(Place::File, "its text is UTF-16; save it as UTF-8");
+        return Err(reader.draft.into_error());
+    }
     for line in lines(bytes) {
         reader.read_line(&line);
     }
@@ -66,8 +70,10 @@ pub fn parse(
 /// A face with the vertices as the file numbers them, from 0.
 struct Face {
     line: usize,
-    /// Or what is wrong with it.
-    ring: Result<Vec<usize>, String>,
+    /// Those of them that can be read.
+    ring: Vec<usize>,
+    /// What is wrong with it, at first.
+    broken: Option<String>,
     object: ObjectId,
     material: usize,
 }
@@ -169,23 +175,31 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
     }
 
     fn read_face(&mut self, line: usize, rest: &str) {
-        let ring = self.ring(rest).inspect_err(|what| self.draft.refuse_face(Place::Line(line), what));
+        let (ring, broken) = self.ring(rest);
+        if let Some(what) = &broken {
+            self.draft.refuse_face(Place::Line(line), what);
+        }
         let object = self.current_object();
         let material = self.material.unwrap_or_else(|| self.use_material("default"));
         self.material = Some(material);
-        self.faces.push(Face { line, ring, object, material });
+        self.faces.push(Face { line, ring, broken, object, material });
     }
 
-    fn ring(&self, corners: &str) -> Result<Vec<usize>, String> {
+    /// The corners that can be read, and what is wrong with the others.
+    fn ring(&self, corners: &str) -> (Vec<usize>, Option<String>) {
         let mut ring = Vec::new();
+        let mut broken = None;
         for token in corners.split(is_blank).filter(|token| !token.is_empty()) {
-            ring.push(self.index(token)?);
+            match self.index(token) {
+                Ok(index) => ring.push(index),
+                Err(what) => broken = broken.or(Some(what)),
+            }
         }
-        if ring.len() < 3 {
-            return Err(format!("a face takes at least 3 vertices, but here are {}", ring.len()));
+        if ring.len() < 3 && broken.is_none() {
+            broken = Some(format!("a face takes at least 3 vertices, but here are {}", ring.len()));
         }
         ring.shrink_to_fit();
-        Ok(ring)
+        (ring, broken)
     }
 
     /// The vertex that a corner of a face names, from 0. It may come later in the file.
@@ -302,20 +316,18 @@ impl<'a, L: FnMut(&str) -> io::Result<Vec<u8>>> Reader<'a, L> {
     fn add_faces(&mut self) -> Vec<usize> {
         let count = self.vertex_count;
         let mut lines = Vec::with_capacity(self.faces.len());
-        for Face { line, ring, object, material } in self.faces.drain(..) {
-            let ring = ring.and_then(|ring| match ring.iter().find(|&&index| index >= count) {
-                Some(unknown) if !self.draft.drops => {
-                    let what = format!("there is no vertex {}; the file has {count}", unknown + 1);
-                    self.draft.refuse_face(Place::Line(line), &what);
-                    Err(what)
-                }
-                _ => Ok(ring),
+        for Face { line, ring, broken, object, material } in self.faces.drain(..) {
+            let broken = broken.or_else(|| {
+                let unknown = ring.iter().find(|&&index| index >= count)?;
+                let what = format!("there is no vertex {}; the file has {count}", unknown + 1);
+                self.draft.refuse_face(Place::Line(line), &what);
+                Some(what)
             });
             lines.push(line);
             let material = MaterialId(material as u32);
-            match ring {
-                Ok(ring) => self.draft.add_face(vec![ring], object, material),
-                Err(why) => self.draft.add_broken_face(why, object, material),
+            match broken {
+                None => self.draft.add_face(vec![ring], object, material),
+                Some(why) => self.draft.add_broken_face(why, vec![ring], object, material),
             }
         }
         lines

@@ -5,7 +5,7 @@ use super::super::error::Place;
 use super::super::number::shown;
 use super::super::{Loaded, ReadError};
 use super::header::{Element, Header, Kind};
-use super::source::{Missing, Source, whole};
+use super::source::{LeftOver, Missing, Source, whole};
 use crate::scene::Material;
 use glam::DVec3;
 
@@ -18,9 +18,12 @@ enum Role {
     None,
 }
 
-/// A face as the file has it, or what is wrong with it.
+/// A face as the file has it.
 struct Face {
-    ring: Result<Vec<usize>, String>,
+    /// Those corners that can be read.
+    ring: Vec<usize>,
+    /// What is wrong with it, at first.
+    broken: Option<String>,
     origin: Origin,
 }
 
@@ -49,17 +52,29 @@ struct Reader<'a> {
     faces: Vec<Face>,
     /// The numbers of the element that are of interest.
     numbers: Vec<f64>,
+    /// The first line with more in it than its element takes, and how many there are.
+    surplus: Option<usize>,
+    surplus_count: usize,
 }
 
 pub(super) fn parse<'a>(header: &Header<'a>, draft: Draft<'a>) -> Result<Loaded, ReadError> {
     let source = Source::new(header.encoding, header.body, header.lines);
-    let mut reader = Reader { draft, source, vertex_count: 0, faces: Vec::new(), numbers: Vec::new() };
+    let mut reader = Reader {
+        draft,
+        source,
+        vertex_count: 0,
+        faces: Vec::new(),
+        numbers: Vec::new(),
+        surplus: None,
+        surplus_count: 0,
+    };
     for element in &header.elements {
         if let Err((place, what)) = reader.read_elements(element) {
             reader.draft.fault(place, what);
             return Err(reader.draft.into_error());
         }
     }
+    reader.warn();
     reader.finish()
 }
 
@@ -85,7 +100,13 @@ impl Reader<'_> {
             let line = self.source.line;
             let place = || if is_text { Place::Line(line) } else { Place::Item(format!("{} {k}", element.name)) };
             match result {
-                Ok(()) => self.add(role, k, place),
+                Ok(()) => {
+                    self.add(role, k, place);
+                    if self.source.has_surplus() {
+                        self.surplus_count += 1;
+                        self.surplus.get_or_insert(line);
+                    }
+                }
                 Err(Missing::Bad(what)) if is_text => {
                     self.add_broken(role, k, place(), what);
                 }
@@ -137,9 +158,12 @@ impl Reader<'_> {
                 self.vertex_count += 1;
             }
             Role::Face(_) => {
-                let ring = indices(&self.numbers).inspect_err(|what| self.draft.refuse_face(place(), what));
+                let (ring, broken) = indices(&self.numbers);
+                if let Some(what) = &broken {
+                    self.draft.refuse_face(place(), what);
+                }
                 let origin = self.origin(role, k);
-                self.faces.push(Face { ring, origin });
+                self.faces.push(Face { ring, broken, origin });
             }
             Role::Strips(_) => self.add_strips(k, place),
             Role::None => {}
@@ -153,13 +177,13 @@ impl Reader<'_> {
         let numbers = std::mem::take(&mut self.numbers);
         for strip in numbers.split(|&number| number == -1.0) {
             for (turn, corners) in strip.windows(3).enumerate() {
-                let mut ring = indices(corners).inspect_err(|what| self.draft.refuse_face(place(), what));
-                if let Ok(ring) = &mut ring
-                    && turn % 2 == 1
-                {
-                    ring.swap(0, 1);
+                let (mut ring, broken) = indices(corners);
+                match &broken {
+                    Some(what) => self.draft.refuse_face(place(), what),
+                    None if turn % 2 == 1 => ring.swap(0, 1),
+                    None => {}
                 }
-                self.faces.push(Face { ring, origin });
+                self.faces.push(Face { ring, broken, origin });
             }
         }
     }
@@ -175,7 +199,8 @@ impl Reader<'_> {
         if let Role::Face(_) = role {
             self.draft.refuse_face(place, &what);
             let origin = self.origin(role, k);
-            self.faces.push(Face { ring: Err(what), origin });
+            let (ring, _) = indices(&self.numbers);
+            self.faces.push(Face { ring, broken: Some(what), origin });
         } else {
             self.draft.fault(place, what);
         }
@@ -189,41 +214,57 @@ impl Reader<'_> {
         }
     }
 
+    /// Says what is ignored though it may have been meant.
+    fn warn(&mut self) {
+        if let Some(line) = self.surplus {
+            let count = self.surplus_count;
+            let what = format_args!("more than its element takes was ignored, in {count} lines in all");
+            self.draft.warn(&Place::Line(line), what);
+        }
+        match self.source.left_over() {
+            LeftOver::Nothing => {}
+            LeftOver::Line(line) => {
+                self.draft.warn(&Place::Line(line), "what follows the last element was ignored");
+            }
+            LeftOver::Bytes(count) => {
+                self.draft.warn(&Place::File, format_args!("the {count} bytes after the last element were ignored"));
+            }
+        }
+    }
+
     fn finish(mut self) -> Result<Loaded, ReadError> {
         let object = self.draft.builder.add_object("default");
         let material = self.draft.builder.add_material(Material::new("default"));
         let count = self.vertex_count;
         let mut origins = Vec::with_capacity(self.faces.len());
-        for Face { ring, origin } in self.faces {
+        for Face { ring, broken, origin } in self.faces {
             origins.push(origin);
-            let ring = ring.and_then(|ring| match ring.iter().find(|&&index| index >= count) {
-                Some(unknown) if !self.draft.drops => {
-                    let known =
-                        if count == 0 { "there are none".to_owned() } else { format!("they are 0 to {}", count - 1) };
-                    let what = format!("there is no vertex {unknown}; {known}");
-                    self.draft.refuse_face(origin.place(), &what);
-                    Err(what)
-                }
-                _ => Ok(ring),
+            let broken = broken.or_else(|| {
+                let unknown = ring.iter().find(|&&index| index >= count)?;
+                let known =
+                    if count == 0 { "there are none".to_owned() } else { format!("they are 0 to {}", count - 1) };
+                let what = format!("there is no vertex {unknown}; {known}");
+                self.draft.refuse_face(origin.place(), &what);
+                Some(what)
             });
-            match ring {
-                Ok(ring) => self.draft.add_face(vec![ring], object, material),
-                Err(why) => self.draft.add_broken_face(why, object, material),
+            match broken {
+                None => self.draft.add_face(vec![ring], object, material),
+                Some(why) => self.draft.add_broken_face(why, vec![ring], object, material),
             }
         }
         self.draft.finish(|k| origins.get(k).map_or(Place::File, |origin| origin.place()), |_| None)
     }
 }
 
-/// The vertices that a face names.
-fn indices(numbers: &[f64]) -> Result<Vec<usize>, String> {
-    if numbers.len() < 3 {
-        return Err(format!("a face takes at least 3 vertices, but here are {}", numbers.len()));
-    }
-    numbers
-        .iter()
-        .map(|&number| whole(number).ok_or_else(|| format!("{number} is not the index of a vertex")))
-        .collect()
+/// The vertices that a face names, and what is wrong with what else it has.
+fn indices(numbers: &[f64]) -> (Vec<usize>, Option<String>) {
+    let ring: Vec<usize> = numbers.iter().copied().filter_map(whole).collect();
+    let broken = match numbers.iter().find(|&&number| whole(number).is_none()) {
+        _ if numbers.len() < 3 => Some(format!("a face takes at least 3 vertices, but here are {}", numbers.len())),
+        Some(number) => Some(format!("{number} is not the index of a vertex")),
+        None => None,
+    };
+    (ring, broken)
 }
 
 /// What an element is read for.

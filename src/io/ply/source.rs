@@ -23,6 +23,14 @@ pub(super) enum Missing {
     Bad(String),
 }
 
+/// What there is after the last element.
+pub(super) enum LeftOver {
+    Nothing,
+    /// Text, from this line on.
+    Line(usize),
+    Bytes(usize),
+}
+
 impl<'a> Source<'a> {
     /// The body that follows a header of so many lines.
     pub(super) fn new(encoding: Encoding, body: &'a [u8], lines: usize) -> Self {
@@ -54,6 +62,22 @@ impl<'a> Source<'a> {
             }
         }
         Err(Missing::End)
+    }
+
+    /// True if there is more in the line of a text element than was read.
+    pub(super) fn has_surplus(&self) -> bool {
+        self.text[self.at..].contains(|c| !is_blank(c))
+    }
+
+    /// What is left when all was read, line ends apart.
+    pub(super) fn left_over(&mut self) -> LeftOver {
+        if self.is_text() {
+            return if self.begin().is_ok() { LeftOver::Line(self.line) } else { LeftOver::Nothing };
+        }
+        match self.rest.len() {
+            _ if self.rest.trim_ascii().is_empty() => LeftOver::Nothing,
+            count => LeftOver::Bytes(count),
+        }
     }
 
     fn word(&mut self) -> Result<&str, Missing> {

@@ -56,6 +56,11 @@ impl Reader<'_> {
             match word.to_ascii_lowercase().as_str() {
                 "solid" => {
                     self.end_facet(Some("`solid`"));
+                    let has = |word: &str| rest.split(is_blank).any(|other| other.eq_ignore_ascii_case(word));
+                    if has("facet") && has("vertex") {
+                        let what = "the facets follow in the line of `solid`, which ends with its name; break the line";
+                        return Err(what.to_owned());
+                    }
                     let name = if rest.is_empty() { "default" } else { rest };
                     self.object = Some(self.draft.builder.add_object(name));
                     return Ok(());
@@ -120,11 +125,12 @@ impl Reader<'_> {
             (None, None) if ring.len() < 3 => Some(format!("a facet takes 3 vertices, but here are {}", ring.len())),
             (None, _) => None,
         };
-        if let Some(what) = &end {
+        // Of a facet that is dropped the first fault is enough.
+        if let Some(what) = end.as_ref().filter(|_| broken.is_none() || !self.draft.drops) {
             self.draft.refuse_face(Place::Line(line), what);
         }
         match broken.or(end) {
-            Some(why) => self.draft.add_broken_face(why, object, self.material),
+            Some(why) => self.draft.add_broken_face(why, vec![ring], object, self.material),
             None => self.draft.add_face(vec![ring], object, self.material),
         }
     }

@@ -248,7 +248,17 @@ impl Contour {
                 }
                 Ok(())
             }
-            Format::Obj => write_obj(path, &visible_groups(image), image.scene()),
+            Format::Obj => {
+                let groups = visible_groups(image);
+                write_obj(path, &groups, image.scene())?;
+                let cells = image.cells().filter(|cell| cell.polygon().is_some()).count();
+                let left_out = cells - groups.iter().map(|group| group.polygons.len()).sum::<usize>();
+                if left_out > 0 {
+                    let what = "cells too thin to have three different corners were left out";
+                    common.warn(&format!("{}: {left_out} {what}", path.display()));
+                }
+                Ok(())
+            }
         }
     }
 }

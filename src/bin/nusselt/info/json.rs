@@ -3,7 +3,7 @@
 use super::{concave, emitters};
 use crate::repairs;
 use crate::summary::{Timing, counted};
-use nusselt::bsp::SceneBsp;
+use nusselt::bsp::{BspError, SceneBsp};
 use nusselt::scene::{Component, Fronts, MeshReport, Orientation, PolygonId, Repair, Scene, VertexId};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -13,7 +13,7 @@ pub(super) fn summary(
     repair: &Repair,
     scene: &Scene,
     report: &MeshReport,
-    bsp: &SceneBsp,
+    bsp: Result<&SceneBsp, &BspError>,
     timing: Timing,
 ) -> Value {
     let mut summary = json!({
@@ -30,14 +30,17 @@ pub(super) fn summary(
         "repair": repair.to_string(),
         "repairs": repairs::as_json(scene.repairs()),
     });
-    let stats = bsp.stats();
-    let rest = json!({
-        "bsp": {
-            "epsilon": bsp.epsilon(), "nodes": stats.nodes, "axis_nodes": stats.axis_nodes, "depth": stats.depth,
-            "splits": stats.splits, "fragments": stats.fragments, "uncut_slivers": stats.uncut_slivers,
-        },
-        "timing": timing,
-    });
+    let mut rest = json!({ "bsp": null, "timing": timing });
+    match bsp {
+        Ok(bsp) => {
+            let stats = bsp.stats();
+            rest["bsp"] = json!({
+                "epsilon": bsp.epsilon(), "nodes": stats.nodes, "axis_nodes": stats.axis_nodes, "depth": stats.depth,
+                "splits": stats.splits, "fragments": stats.fragments, "uncut_slivers": stats.uncut_slivers,
+            });
+        }
+        Err(error) => rest["bsp_not_built"] = json!(error.to_string()),
+    }
     for part in [flaws(scene, report), surfaces(report), rest] {
         if let (Value::Object(summary), Value::Object(part)) = (&mut summary, part) {
             summary.extend(part);

@@ -5,12 +5,13 @@ mod words;
 
 use crate::args::{Common, Loading, Order};
 use crate::failure::Failure;
-use crate::input::{build, load};
+use crate::input::{load, try_to_build};
 use crate::output::{print, print_json, write_obj};
 use crate::summary::Timing;
+use nusselt::bsp::{BspError, SceneBsp};
 use nusselt::io::fragment_groups;
 use nusselt::scene::{Scene, Shape};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const EXAMPLE: &str = "\
 Example: look over a room, and write the fragments of its 3D BSP
@@ -48,17 +49,34 @@ impl Info {
         };
         let (scene, load_s) = load(&self.scene, output.into_iter(), &self.loading, common)?;
         let report = scene.report();
-        let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
-        if let Some(output) = output {
-            write_obj(output, &fragment_groups(&bsp), &scene)?;
+        let (bsp, bsp_s) = try_to_build(&scene, &self.order);
+        let bsp = match bsp {
+            Err(error @ BspError::TooManyFragments { .. }) if output.is_none() => Err(error),
+            bsp => Ok(bsp.map_err(|error| Failure::about(&self.scene, &error))?),
+        };
+        let bsp = bsp.as_ref();
+        let left_out = match (output, bsp) {
+            (Some(output), Ok(bsp)) => write_fragments(output, bsp, &scene)?,
+            _ => 0,
+        };
+        if let (Some(output), 1..) = (output, left_out) {
+            let what = "fragments too thin to have three different corners were left out";
+            common.warn(&format!("{}: {left_out} {what}", output.display()));
         }
         let timing = Timing::new(load_s, bsp_s, &[]);
         if common.json {
             let repair = &self.loading.repair;
-            return print_json(&json::summary(&self.scene, repair, &scene, &report, &bsp, timing));
+            return print_json(&json::summary(&self.scene, repair, &scene, &report, bsp, timing));
         }
-        if common.quiet { Ok(()) } else { print(&words::summary(&scene, &report, &bsp, timing)) }
+        if common.quiet { Ok(()) } else { print(&words::summary(&scene, &report, bsp, timing)) }
     }
+}
+
+/// Writes the fragments; gives how many are too thin to be faces.
+fn write_fragments(output: &Path, bsp: &SceneBsp, scene: &Scene) -> Result<usize, Failure> {
+    let groups = fragment_groups(bsp);
+    write_obj(output, &groups, scene)?;
+    Ok(bsp.fragment_count() - groups.iter().map(|group| group.polygons.len()).sum::<usize>())
 }
 
 fn emitters(scene: &Scene) -> usize {

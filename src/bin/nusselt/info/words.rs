@@ -3,10 +3,13 @@
 use super::{concave, emitters};
 use crate::repairs;
 use crate::summary::{Lines, Timing, named, number, vector};
-use nusselt::bsp::SceneBsp;
-use nusselt::scene::{Component, CoplanarOverlap, Fronts, MeshReport, NonPlanarPolygon, Orientation, PolygonId, Scene};
+use nusselt::bsp::{BspError, SceneBsp};
+use nusselt::scene::{
+    Component, CoplanarOverlap, CrowdedEdge, Fronts, MeshReport, NonPlanarPolygon, OpenEdge, Orientation, PolygonId,
+    Scene, TJunction, VertexId,
+};
 
-pub(super) fn summary(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing: Timing) -> String {
+pub(super) fn summary(scene: &Scene, report: &MeshReport, bsp: Result<&SceneBsp, &BspError>, timing: Timing) -> String {
     let mut lines = Lines::default();
     let shapes = [
         (concave(scene), "concave"),
@@ -23,8 +26,17 @@ pub(super) fn summary(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing
         lines.add("bounds", format!("{} to {}", vector(low), vector(high)));
     }
     repairs::tell(scene.repairs(), &mut lines);
-    flaws(report, &mut lines);
+    flaws(scene, report, &mut lines);
     surfaces(report, &mut lines);
+    match bsp {
+        Ok(bsp) => tree(bsp, &mut lines),
+        Err(error) => lines.add("3D BSP", format!("not built: {error}")),
+    }
+    lines.add("time", format!("load {:.3} s, BSP {:.3} s", timing.load_s, timing.bsp_s));
+    lines.0
+}
+
+fn tree(bsp: &SceneBsp, lines: &mut Lines) {
     let stats = bsp.stats();
     lines.add(
         "3D BSP",
@@ -33,8 +45,6 @@ pub(super) fn summary(scene: &Scene, report: &MeshReport, bsp: &SceneBsp, timing
     if bsp.epsilon() > 0.0 {
         lines.add("epsilon", format!("{}, {} slivers left uncut", number(bsp.epsilon()), stats.uncut_slivers));
     }
-    lines.add("time", format!("load {:.3} s, BSP {:.3} s", timing.load_s, timing.bsp_s));
-    lines.0
 }
 
 /// Those there are any of.
@@ -49,7 +59,7 @@ fn listed<T>(items: &[T], show: impl Fn(&T) -> String) -> String {
 }
 
 /// What is wrong with single polygons and edges.
-fn flaws(report: &MeshReport, lines: &mut Lines) {
+fn flaws(scene: &Scene, report: &MeshReport, lines: &mut Lines) {
     let edges = several(&[
         (report.open_edges.len(), "open"),
         (report.crowded_edges.len(), "of more than two polygons"),
@@ -57,12 +67,33 @@ fn flaws(report: &MeshReport, lines: &mut Lines) {
     ]);
     lines.add("edges", if edges.is_empty() { "closed".to_owned() } else { edges });
     lines.add("duplicates", listed(&report.duplicates, |[first, later]| format!("{later} of {first}")));
+    let show = |edge: &[VertexId; 2]| edge.map(|v| vector(scene.vertex(v))).join(" to ");
+    if !report.open_edges.is_empty() {
+        let show = |open: &OpenEdge| format!("{} (length {})", open.polygon, number(open.length));
+        lines.add("open edges", format!("of polygons {}", named(&report.open_edges, show)));
+    }
+    if !report.crowded_edges.is_empty() {
+        let show = |crowded: &CrowdedEdge| {
+            let polygons: Vec<_> = crowded.polygons.iter().take(8).map(PolygonId::to_string).collect();
+            let more = if crowded.polygons.len() > polygons.len() { " and more" } else { "" };
+            format!("{}{more} (length {})", polygons.join(" and "), number(crowded.length))
+        };
+        lines.add("crowded", format!("of polygons {}", named(&report.crowded_edges, show)));
+    }
+    if !report.turned_edges.is_empty() {
+        lines.add("turned", named(&report.turned_edges, show));
+    }
     let cracks = report.t_junctions.iter().filter(|t| !t.exact).count();
     let widest = report.t_junctions.iter().fold(0.0, |most: f64, t| most.max(t.gap));
     let widest = if cracks > 0 { format!(", the widest gap {}", number(widest)) } else { String::new() };
     let more = or_more(report.all_t_junctions);
     let count = report.t_junctions.len();
-    lines.add("T-junctions", format!("{count}{more}, {cracks} of them not exactly on the edge{widest}"));
+    let of = |t: &TJunction| {
+        let gap = if t.exact { String::new() } else { format!(" (gap {})", number(t.gap)) };
+        format!("{} in {}{gap}", vector(scene.vertex(t.vertex)), show(&t.edge))
+    };
+    let first = if count == 0 { String::new() } else { format!(": {}", named(&report.t_junctions, of)) };
+    lines.add("T-junctions", format!("{count}{more}, {cracks} of them not exactly on the edge{widest}{first}"));
     if !report.non_planar.is_empty() {
         let show = |face: &NonPlanarPolygon| format!("{} (by {})", face.polygon, number(face.deviation));
         lines.add("not planar", listed(&report.non_planar, show));
