@@ -347,6 +347,11 @@ impl Directions {
         sign
     }
 
+    /// The direction in floating point.
+    pub(crate) fn approximation(&self, d: DirectionId) -> &Approx3 {
+        &self.approximations[d.0 as usize]
+    }
+
     /// The direction as a unit vector.
     pub(crate) fn unit(&self, d: DirectionId) -> DVec3 {
         self.approximations[d.0 as usize].v.normalize_or_zero()

@@ -3,7 +3,7 @@
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
 use crate::bsp::Skeleton;
-use crate::exact::{SeenBox, Sign};
+use crate::exact::{SeenBox, SeenPlane, Sign};
 use crate::scene::PieceId;
 use glam::DVec3;
 use std::ops::Range;
@@ -66,6 +66,8 @@ pub(crate) struct Filler {
     pub(crate) near: f64,
     /// What becomes `far` of the leaves it fills: 0 if nothing can come in front of it.
     pub(crate) far: f64,
+    /// Its plane, if the distance of that within a leaf may be less.
+    pub(crate) plane: Option<SeenPlane>,
 }
 
 /// How a polygon that is put in lies to the piece that fills a leaf, in that leaf.
@@ -473,8 +475,14 @@ impl ContourTree {
             self.nodes.push(TreeNode { circle, negative, positive, parent, far });
             parent = Some(node);
         }
-        self.narrow(leaf, &work.arcs[polygon], parent);
-        self.close(leaf, LeafState::Filled(filler.piece), filler.far);
+        let boundary = &work.arcs[polygon];
+        self.narrow(leaf, boundary, parent);
+        // A convex part of a plane is farthest at one of its corners.
+        let far = filler.plane.map_or(filler.far, |plane| {
+            let corners = boundary.iter().map(|arc| plane.distance(self.directions.approximation(arc.from)));
+            corners.fold(0.0, f64::max).min(filler.far)
+        });
+        self.close(leaf, LeafState::Filled(filler.piece), far);
         work.filled.push(leaf);
     }
 

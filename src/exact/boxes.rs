@@ -39,6 +39,14 @@ impl SeenBox {
     }
 }
 
+impl SeenBox {
+    /// At least the size of every point's height over the plane with that normal through the point it is seen from.
+    pub(super) fn most_height(&self, normal: &Approx3) -> f64 {
+        let reach = normal.v.abs().dot(self.half) + self.margin + normal.slack * self.size;
+        (normal.v.dot(self.center).abs() + reach) * (1.0 + 8.0 * U)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

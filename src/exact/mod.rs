@@ -14,6 +14,7 @@ mod fixed;
 mod frame;
 mod kernel;
 mod orient;
+mod reach;
 mod sign;
 mod stats;
 #[cfg(test)]
@@ -32,4 +33,5 @@ pub(crate) use arena::{Arena, Kept3};
 pub(crate) use boxes::SeenBox;
 pub(crate) use construct::Constructor;
 pub(crate) use frame::{BitRange, Frame};
+pub(crate) use reach::SeenPlane;
 pub(crate) use zeros::ZeroComponents;

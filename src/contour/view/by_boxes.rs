@@ -11,7 +11,7 @@ use super::space::Buffers;
 use super::{Sight, ViewError, ViewOptions, ViewSpace};
 use crate::bsp::{Bounds, FragmentSide, LineId};
 use crate::bvh::{Content, Hierarchy, Panel, SceneBvh, vertex};
-use crate::exact::{SeenBox, Sign, U};
+use crate::exact::{SeenBox, SeenPlane, Sign, U};
 use crate::scene::{PieceId, PieceRef, PlaneId, Side, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
@@ -169,7 +169,9 @@ impl Walk<'_> {
         let near = distance_to_box(eye, bounds);
         let corners = sides.iter().map(|side| hierarchy.scene.vertex(vertex(side.point)));
         let far = corners.fold(0.0, |far, p| f64::max(far, distance_bound(eye, p)));
-        let filler = Filler { piece: *id, near, far };
+        let (skeleton, plane) = (&hierarchy.skeleton, piece.plane_id());
+        let plane = SeenPlane::new(skeleton.approx_normal(plane), skeleton.anchor(plane), eye);
+        let filler = Filler { piece: *id, near, far, plane: Some(plane) };
         let is_one = halves.is_none();
         let mut rivals =
             Rivals { hierarchy, eye, piece, sides, is_one, shown, last: None, creases, outcome: Outcome::Done };

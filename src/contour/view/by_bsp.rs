@@ -101,7 +101,7 @@ fn insert(sight: &mut Sight<'_>, tree: &Tree, id: FragmentId) {
     sight.stats.inserted += 1;
     let bounds = bounds_of(&tree.skeleton, sides);
     let seen = SeenBox::new(sight.eye, bounds.low, bounds.high);
-    let filler = Filler { piece: fragment.piece, near: 0.0, far: 0.0 };
+    let filler = Filler { piece: fragment.piece, near: 0.0, far: 0.0, plane: None };
     let Sight { contour, buffers: Buffers { work, polygon, .. }, .. } = sight;
     contour.insert(&tree.skeleton, contour.root, polygon, &seen, &filler, |_, _, _, _| Verdict::Behind, work);
 }
