@@ -123,8 +123,15 @@ fn is_cell(cell: &[DVec3], (towards, whole): View) -> bool {
     convex && (whole || cell.iter().all(|d| d.dot(towards) >= 0.0))
 }
 
+/// How far pictures of arcs may be off, in tolerances.
+fn allowed(projector: &Projector) -> f64 {
+    // Beside a pole a panorama's picture of an arc has corners, of which half is missed.
+    if projector.projection() == Projection::Equirectangular { 2.0 } else { 1.1 }
+}
+
 fn check_cell(projector: &Projector, cell: &[DVec3], tolerance: f64) -> Result<(), TestCaseError> {
     let paths = projector.cell(cell, tolerance);
+    let allowed = allowed(projector) * tolerance;
     let (name, window) = (projector.projection().name(), projector.window());
     for path in &paths {
         prop_assert!(path.len() > 2, "{name}: no area: {path:?}");
@@ -144,11 +151,11 @@ fn check_cell(projector: &Projector, cell: &[DVec3], tolerance: f64) -> Result<(
         window.low + window.size() * place / f64::from(cells_of_grid)
     });
     let beside = paths.iter().flat_map(|path| edges(path)).flat_map(|[a, b]| {
-        let off = (b - a).perp().normalize() * (1.2 * tolerance);
+        let off = (b - a).perp().normalize() * (1.1 * allowed);
         [a.midpoint(b) + off, a.midpoint(b) - off]
     });
     for p in steps.chain(beside).filter(|&p| shows(projector, p)) {
-        if paths.iter().flat_map(|path| edges(path)).all(|edge| distance(p, edge) > 1.1 * tolerance) {
+        if paths.iter().flat_map(|path| edges(path)).all(|edge| distance(p, edge) > allowed) {
             let height = heights(cell, direction_at(projector, p));
             let expected = i32::from(height > 0.0);
             prop_assert!(
@@ -216,9 +223,7 @@ fn check_arc(projector: &Projector, ends: [DVec3; 2], tolerance: f64) -> Result<
         if p.is_finite() && inside(window, p, 1e-7) && !leaps && !is_behind {
             let to = |pair: &[DVec2]| distance(p, [pair[0], pair[1]]);
             let off = lines.iter().flat_map(|line| line.windows(2)).map(to).fold(f64::INFINITY, f64::min);
-            // Beside a pole a panorama's picture of an arc has corners, of which half is missed.
-            let allowed = if projector.projection() == Projection::Equirectangular { 2.0 } else { 1.1 };
-            prop_assert!(off <= allowed * tolerance + 1e-7, "{name}: {p} is {off} away from {lines:?}");
+            prop_assert!(off <= allowed(projector) * tolerance + 1e-7, "{name}: {p} is {off} away from {lines:?}");
         }
     }
     prop_assert!(!crosses_nothing || lines.len() == 1, "{name}: in pieces: {lines:?}");

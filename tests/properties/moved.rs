@@ -65,7 +65,7 @@ fn afresh(scene: &Scene, moves: &Moves, repair: Repair, moved: Option<&Scene>) -
     for polygon in scene.polygons() {
         let object = polygon.object();
         if polygon.shape() == Shape::Dropped {
-            builder.add_unreadable_face(object, material, "dropped before".to_owned());
+            builder.add_unreadable_face(FaceSpec { rings: Vec::new(), object, material }, "dropped before".to_owned());
             continue;
         }
         let stays = moved.map(|moved| moved.polygon(polygon.id())).filter(|polygon| polygon.shape() != Shape::Dropped);
