@@ -50,7 +50,7 @@ pub struct UncutSliver {
     pub polygon: PolygonId,
     /// The piece of it.
     pub piece: PieceId,
-    /// The plane that would have cut it: one of [`Scene::planes`], or an axis-aligned one.
+    /// The plane that would have cut it: one of [`Scene::planes`], an axis-aligned one, or one through three vertices.
     pub plane: crate::scene::SupportingPlane,
     /// The side of that plane on which its sliver is; `None` if it was taken to lie in the plane.
     pub beyond: Option<Side>,

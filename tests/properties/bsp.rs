@@ -9,6 +9,7 @@ use nusselt::testing::{
     Case, Faces, Mode, case, check_bsp, check_fragments, check_mirror, check_order, check_same_bits, gallery,
 };
 use proptest::prelude::*;
+use std::collections::BTreeSet;
 
 proptest! {
     #![proptest_config(cases(600))]
@@ -41,6 +42,19 @@ proptest! {
         // On a grid of unit 1 these leave much uncut.
         let bsp = hold(Case { epsilon: 2f64.powi(1 - exponent), ..case.clone() }.bsp())?;
         hold(check_order(&bsp, case.eye))?;
+    }
+}
+
+/// Where slivers are few enough that most pairs of fragments are compared.
+#[test]
+fn with_epsilon_the_order_of_a_room_is_right_but_for_slivers() {
+    let mesh = generate(Kind::Room, 150, 4).unwrap();
+    let scene = mesh.to_builder().build().unwrap();
+    let bsp = SceneBsp::build(&scene, &BspOptions { epsilon: 0.05, ..BspOptions::default() }).unwrap();
+    let slivers: BTreeSet<_> = bsp.uncut_slivers().iter().map(|sliver| sliver.piece).collect();
+    assert!(!slivers.is_empty() && slivers.len() * 4 < scene.piece_count(), "{} slivers", slivers.len());
+    for eye in mesh.free_points(3, 1) {
+        check_order(&bsp, eye.into()).unwrap();
     }
 }
 
