@@ -103,46 +103,47 @@ fn union(a: Corners, b: Corners) -> Corners {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
-/// Parts pieces in two by the middle of their boxes, where that is cheapest (Goldsmith and Salmon 1987, with
-/// bins as Wald 2007); gives the size of the first part, or `None` if no such cut leaves something on both sides.
+/// Parts pieces in two by the middle of their boxes along the axis on which those are furthest apart, where that is cheapest
+/// (Goldsmith and Salmon 1987, with bins as Wald 2007); gives the size of the first part, or `None` if no such cut leaves
+/// something on both sides.
 fn cheapest_cut(part: &mut [(PieceId, Corners)]) -> Option<usize> {
     const NOWHERE: Corners = [DVec3::INFINITY, DVec3::NEG_INFINITY];
     // Halved before the sum, which could overflow.
     let middle = |own: &Corners| own[0] * 0.5 + own[1] * 0.5;
     let [low, high] = part.iter().fold(NOWHERE, |all, (_, own)| union(all, [middle(own); 2]));
-    let bin = |own: &Corners, axis: usize| {
-        let share = (middle(own)[axis] - low[axis]) / (high[axis] - low[axis]);
-        ((share * BINS as f64) as usize).min(BINS - 1)
-    };
-    let mut best: Option<(f64, usize, usize)> = None;
-    for axis in 0..3 {
-        if high[axis].partial_cmp(&low[axis]) != Some(std::cmp::Ordering::Greater) {
-            continue;
-        }
-        let mut bins = [(0, NOWHERE); BINS];
-        for (_, own) in &*part {
-            let bin = &mut bins[bin(own, axis)];
-            *bin = (bin.0 + 1, union(bin.1, *own));
-        }
-        let mut behind = [0.0; BINS];
-        let mut all = (0, NOWHERE);
-        for k in (1..BINS).rev() {
-            all = (all.0 + bins[k].0, union(all.1, bins[k].1));
-            behind[k] = if all.0 == 0 { f64::INFINITY } else { f64::from(all.0) * half_area(all.1) };
-        }
-        let mut before = (0, NOWHERE);
-        for k in 1..BINS {
-            before = (before.0 + bins[k - 1].0, union(before.1, bins[k - 1].1));
-            let cost = f64::from(before.0) * half_area(before.1) + behind[k];
-            if before.0 > 0 && cost < best.map_or(f64::INFINITY, |best| best.0) {
-                best = Some((cost, axis, k));
-            }
+    let size = high - low;
+    let axis = size.max_position();
+    if !(size[axis] > 0.0 && size[axis].is_finite()) {
+        return None;
+    }
+    let bin = |own: &Corners| (((middle(own)[axis] - low[axis]) / size[axis] * BINS as f64) as usize).min(BINS - 1);
+    let mut bins = [(0, NOWHERE); BINS];
+    for (_, own) in &*part {
+        let bin = &mut bins[bin(own)];
+        *bin = (bin.0 + 1, union(bin.1, *own));
+    }
+    let mut behind = [0.0; BINS];
+    let mut all = (0, NOWHERE);
+    for k in (1..BINS).rev() {
+        all = (all.0 + bins[k].0, union(all.1, bins[k].1));
+        behind[k] = if all.0 == 0 { f64::INFINITY } else { f64::from(all.0) * half_area(all.1) };
+    }
+    let mut before = (0, NOWHERE);
+    let mut best = (f64::INFINITY, 0);
+    for k in 1..BINS {
+        before = (before.0 + bins[k - 1].0, union(before.1, bins[k - 1].1));
+        let cost = f64::from(before.0) * half_area(before.1) + behind[k];
+        if before.0 > 0 && cost < best.0 {
+            best = (cost, k);
         }
     }
-    let (_, axis, cut) = best?;
+    let (_, cut) = best;
+    if cut == 0 {
+        return None;
+    }
     let mut first = 0;
     for k in 0..part.len() {
-        if bin(&part[k].1, axis) < cut {
+        if bin(&part[k].1) < cut {
             part.swap(first, k);
             first += 1;
         }

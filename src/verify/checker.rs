@@ -43,16 +43,14 @@ const EXCUSES: u64 = 1 << 26;
 impl<'a, S: Signs> Checker<'a, S> {
     /// Takes in evidence whose form was checked.
     pub(super) fn new(scene: &'a Scene, evidence: &'a Evidence, mut signs: S) -> Result<Self, Defect> {
-        let mut edges = vec![NONE; scene.edges().len()];
-        let edge_ids: FxHashMap<[VertexId; 2], usize> = scene.edges().iter().copied().zip(0..).collect();
+        let mut along: FxHashMap<[VertexId; 2], u32> = FxHashMap::default();
         for splitter in &evidence.splitters {
             let id = signs.add(&scene.resolve_splitter(*splitter));
-            if let Splitter::Edge(ends) = splitter
-                && let Some(&edge) = edge_ids.get(ends)
-            {
-                edges[edge] = id;
+            if let Splitter::Edge(ends) = splitter {
+                along.insert(*ends, id);
             }
         }
+        let edges = scene.edges().iter().map(|ends| along.get(ends).copied().unwrap_or(NONE)).collect();
         for plane in scene.planes() {
             signs.add_plane(&scene.resolve_plane(*plane));
         }
