@@ -6,15 +6,14 @@
 //! factors, and drawings of what is seen.
 //!
 //! ```
-//! use nusselt::bsp::{BspOptions, SceneBsp};
-//! use nusselt::contour::{Domain, Viewpoint};
+//! use nusselt::contour::{Domain, SceneOrder, Viewpoint};
 //! use nusselt::samples::{Kind, generate};
 //! use nusselt::scene::{PolygonId, Side};
 //!
 //! let scene = generate(Kind::Room, 1_000, 1)?.to_builder().build()?; // or io::read_scene(path)
-//! let bsp = SceneBsp::build(&scene, &BspOptions::default())?; // once a scene, shared by threads
+//! let order = SceneOrder::new(&scene); // once a scene, shared by threads
 //! let viewpoint = Viewpoint::on_surface(&scene, PolygonId(0), Side::Front, glam::DVec3::ZERO)?;
-//! let image = bsp.view(&viewpoint, &Domain::Above)?;
+//! let image = order.view(&viewpoint, &Domain::Above)?;
 //! let factors = image.form_factors().expect("a hemisphere has a normal");
 //! assert!((factors.total() - 1.0).abs() < 1e-12);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

@@ -278,7 +278,7 @@ fn next(k: usize, sides: &[FragmentSide]) -> usize {
 mod tests {
     use super::super::SceneBvh;
     use crate::exact::orient3d;
-    use crate::scene::{Material, Scene};
+    use crate::scene::{Material, PieceRef, Scene};
     use glam::DVec3;
 
     type Mesh = (Vec<[f64; 3]>, Vec<Vec<usize>>);
@@ -313,9 +313,11 @@ mod tests {
         let (scene, panels) = (bvh.scene(), &bvh.hierarchy.panels);
         let mut all = Vec::new();
         let mut rest = bvh.hierarchy.order.clone();
-        rest.iter().for_each(|&panel| panels.pieces(panel, &mut all));
+        for &panel in &rest {
+            panels.pieces(panel, &mut all);
+        }
         all.sort_unstable();
-        assert!(all.into_iter().eq(scene.pieces().map(|piece| piece.id())));
+        assert!(all.into_iter().eq(scene.pieces().map(PieceRef::id)));
         while let Some(panel) = rest.pop() {
             let corners = |panel: u32| panels.sides(panel).iter().map(|s| scene.vertex(super::vertex(s.point)));
             let normal = bvh.hierarchy.skeleton.approx_normal(scene.piece(panels.panel(panel).piece).plane_id()).v;
@@ -360,11 +362,12 @@ mod tests {
         tiles.pop();
         assert_eq!(sizes(&(vertices, tiles)), [2, 1]);
         // A roof, one tile of which is higher by as little as can be at its far side.
-        let ridge = |height: f64| wall(2, 1, move |x, y| [x, y, if x == 2.0 { height } else { 1.0 }]);
+        let ridge = |height: f64| wall(2, 1, move |x, y| [x, y, if x > 1.5 { height } else { 1.0 }]);
         assert_eq!(sizes(&ridge(1.0)), [2]);
         assert_eq!(sizes(&ridge(1.0_f64.next_up())), [1, 1]);
         // The corner in the middle of a side off its line by as little, outwards and inwards; or right on it.
-        let bent = |y: f64| wall(2, 1, move |x, row| [x, if x == 1.0 && row == 1.0 { y } else { row }, 1.0]);
+        let bent =
+            |y: f64| wall(2, 1, move |x, row| [x, if (0.5..1.5).contains(&x) && row > 0.5 { y } else { row }, 1.0]);
         assert_eq!(sizes(&bent(1.0)), [2]);
         assert_eq!(sizes(&bent(1.0_f64.next_up())), [2]);
         assert_eq!(sizes(&bent(1.0_f64.next_down())), [1, 1]);

@@ -85,7 +85,7 @@ fn coordinates_of_any_size_are_proved() {
                 .filter(|polygon| polygon.rings().len() == 1)
                 .map(|polygon| polygon.rings()[0].iter().map(|v| v.index()).collect())
                 .collect();
-            let material = nusselt::scene::Material::new("grey");
+            let material = Material::new("grey");
             let scaled = Scene::builder().mesh(&vertices, &faces, material).build().unwrap();
             let evidence = image(&scaled, &Viewpoint::free(eyes[0] * scale), &Domain::Sphere).evidence();
             for arithmetic in [Arithmetic::Kernel, Arithmetic::Rational] {
@@ -141,7 +141,7 @@ fn made_up_slivers_far_from_their_plane_excuse_nothing() {
     let mut evidence = image.evidence();
     let cell = evidence.cells.iter().position(|cell| cell.piece.is_some_and(|piece| piece.index() > 5)).unwrap();
     // What is behind: a wall of the room, which a ray through the cell meets.
-    let behind = (0..6).map(nusselt::scene::PieceId).find(|&wall| {
+    let behind = (0..6).map(PieceId).find(|&wall| {
         let mut changed = evidence.clone();
         changed.cells[cell].piece = Some(wall);
         changed.check_to(&scene, Arithmetic::Kernel, Extent::Cones).is_ok()

@@ -87,6 +87,7 @@ proptest! {
 
 /// Where three planes meet was rounded from whatever fragment came there first, and planes were chosen by that.
 #[test]
+#[allow(clippy::unreadable_literal, reason = "as proptest printed them")]
 fn points_of_three_planes_are_rounded_the_same_in_subtrees_that_grow_apart() {
     let faces = Faces::from(vec![
         vec![[0.0, 0.0, 0.0], [0.0, 0.0, -2.4612132887019227], [4.3205762522355595, 0.0, 0.0]],
