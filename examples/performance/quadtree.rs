@@ -85,6 +85,6 @@ fn draw(path: &Path, quadtree: Quadtree) -> Result<(), Box<dyn Error>> {
     let options = ViewOptions { quadtree_depth: Some(4), quadtree, ..ViewOptions::default() };
     let image = bvh.view_with(&Viewpoint::free(DVec3::ZERO), &UP, &options)?;
     let projector = Projector::of_image(&image, Projection::Stereographic)?;
-    let options = SvgOptions { size: 500.0, show_tree: true };
+    let options = SvgOptions { show_tree: true, ..SvgOptions::default() };
     Ok(atomic_write(path, |file| write_svg(&image, &projector, &options, file))?)
 }

@@ -40,10 +40,10 @@ pub(crate) fn part(images: &Path) -> Result<String, Box<dyn Error>> {
         })
     };
     let [polygons, ms] = ["polygons in the scene", "milliseconds a view, with all form factors"];
-    let time = Log { title: ms, range: (0.1, 1_000.0) };
+    let time = Log { title: ms, range: (0.02, 1_000.0) };
     let all = lines(|row| vec![(row.polygons as f64, row.view_ms + row.factors_ms)]);
     chart(&images.join("scaling-polygons.svg"), &Log { title: polygons, range: (800.0, 1.2e6) }, &time, &all, true)?;
-    let visible = Log { title: "polygons seen", range: (30.0, 2e5) };
+    let visible = Log { title: "polygons seen", range: (10.0, 3e5) };
     chart(&images.join("scaling-visible.svg"), &visible, &time, &lines(|row| row.views.clone()), false)?;
     let mut text = String::from(
         "| scene | polygons | build s | view ms | factors ms | visible | cells | us a visible polygon |\n\

@@ -1,6 +1,6 @@
 //! A hierarchy of boxes around the pieces, so that a cell is compared only with what may be in front of it.
 
-use crate::scene::{PieceId, Scene};
+use crate::scene::{PieceId, PieceRef};
 use glam::DVec3;
 
 /// A leaf holds at most so many pieces.
@@ -8,6 +8,11 @@ const LEAF: usize = 4;
 
 /// The two extreme corners of a box; exact, as no coordinate is computed.
 pub(super) type Corners = [DVec3; 2];
+
+/// The box around a piece.
+pub(super) fn corners_of(piece: PieceRef<'_>) -> Corners {
+    piece.points().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
+}
 
 #[derive(Clone, Copy, Debug)]
 struct Node {
@@ -27,13 +32,9 @@ pub(super) struct PieceBoxes {
 }
 
 impl PieceBoxes {
-    /// A hierarchy of those pieces, each node cut where the areas of its parts, times what they hold, are least.
-    pub(super) fn new(scene: &Scene, pieces: impl IntoIterator<Item = PieceId>) -> Self {
-        let corners = |id: PieceId| {
-            let points = scene.piece(id).points();
-            points.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], p| [low.min(p), high.max(p)])
-        };
-        let mut boxes = Self { nodes: Vec::new(), pieces: pieces.into_iter().map(|id| (id, corners(id))).collect() };
+    /// A hierarchy of those pieces with boxes around them, each node cut where the areas of its parts, times what they hold, are least.
+    pub(super) fn new(pieces: Vec<(PieceId, Corners)>) -> Self {
+        let mut boxes = Self { nodes: Vec::new(), pieces };
         // A node is made when its job is taken, so a first child comes right after its parent.
         let mut jobs = vec![(0, boxes.pieces.len(), None::<usize>)];
         while let Some((first, end, second_of)) = jobs.pop() {

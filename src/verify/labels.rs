@@ -1,13 +1,13 @@
 //! Rules D and E: every cell shows what is nearest in all of its directions.
 
-use super::boxes::PieceBoxes;
+use super::boxes::{PieceBoxes, corners_of};
 use super::checker::Checker;
 use super::defect::Defect;
 use super::evidence::HalfSphere;
 use super::signs::Signs;
 use super::slivers::Disorder;
 use crate::exact::{Sign, Splitter};
-use crate::scene::{PieceId, PieceRef, Side};
+use crate::scene::{PieceId, Side};
 use glam::DVec3;
 
 /// So many pieces in front of another are tested against each of its cells.
@@ -21,10 +21,17 @@ struct Work {
 }
 
 impl<S: Signs> Checker<'_, S> {
-    /// A hierarchy of the pieces that can be seen at all: those whose plane does not hold the eye.
-    fn boxes(&self) -> PieceBoxes {
-        let seen = self.scene.pieces().filter(|piece| !self.heights[piece.plane_id().index()].is_zero());
-        PieceBoxes::new(self.scene, seen.map(PieceRef::id))
+    /// A hierarchy of the pieces that can be seen at all: those whose plane does not hold the eye, and that are not all below the
+    /// horizon, where no cell is once they are known to tile the domain.
+    fn boxes(&mut self) -> PieceBoxes {
+        let mut seen = Vec::new();
+        for piece in self.scene.pieces().filter(|piece| !self.heights[piece.plane_id().index()].is_zero()) {
+            let corners = corners_of(piece);
+            if !self.horizon.is_some_and(|horizon| self.signs.box_outside(&[horizon], corners)) {
+                seen.push((piece.id(), corners));
+            }
+        }
+        PieceBoxes::new(seen)
     }
 
     /// D: every cell lies in the cone of the piece that it shows, and background meets no cone.
@@ -34,7 +41,14 @@ impl<S: Signs> Checker<'_, S> {
         for cell in 0..self.cell_count() {
             match self.evidence.cells[cell as usize].piece {
                 Some(piece) => self.check_cone(cell, piece, &mut work)?,
-                None => self.check_background(cell, boxes.get_or_insert_with(|| self.boxes()), &mut work)?,
+                None => {
+                    if boxes.is_none() {
+                        boxes = Some(self.boxes());
+                    }
+                    if let Some(boxes) = &boxes {
+                        self.check_background(cell, boxes, &mut work)?;
+                    }
+                }
             }
         }
         Ok(())
