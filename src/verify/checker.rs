@@ -139,6 +139,7 @@ impl<'a, S: Signs> Checker<'a, S> {
     }
 
     /// The sign of `n_1 . (n_2 x n_3)` for the normals to the inside.
+    #[inline]
     pub(super) fn orientation(&mut self, sides: [HalfSphere; 3]) -> Sign {
         let [a, b, c] = sides.map(|side| self.on_circle(side).0);
         if a == b || b == c || c == a {

@@ -252,6 +252,7 @@ fn show_plane(plane: &SupportingPlane) -> String {
 }
 
 /// The unit direction in which two half spheres' great circles cross, counter-clockwise from the first.
+#[inline]
 pub(super) fn rounded_crossing(normals: [DVec3; 2], signs: [Sign; 2]) -> DVec3 {
     let [a, b] = normals.map(DVec3::normalize_or_zero);
     let d = a.cross(b).normalize_or_zero();
