@@ -4,7 +4,7 @@
 //! docs/comparison.md, and docs/images/comparison-*.svg. Another folder in their place, with a comparison.md in it, may be named.
 
 mod figures;
-#[path = "../shared/marks.rs"]
+#[path = "../common/marks.rs"]
 mod marks;
 mod tables;
 

@@ -3,7 +3,7 @@
 //!
 //! Hemisphere views, normal up, of generated scenes from points inside.
 
-#[path = "../shared/marks.rs"]
+#[path = "../common/marks.rs"]
 mod marks;
 mod overlaps;
 mod plot;
