@@ -37,18 +37,13 @@ impl<S: Signs> Checker<'_, S> {
     /// D: every cell lies in the cone of the piece that it shows, and background meets no cone.
     pub(super) fn check_cones(&mut self) -> Result<(), Defect> {
         let mut work = Work::default();
-        let mut boxes = None;
+        let has_background = self.evidence.cells.iter().any(|cell| cell.piece.is_none());
+        let boxes = has_background.then(|| self.boxes());
         for cell in 0..self.cell_count() {
-            match self.evidence.cells[cell as usize].piece {
-                Some(piece) => self.check_cone(cell, piece, &mut work)?,
-                None => {
-                    if boxes.is_none() {
-                        boxes = Some(self.boxes());
-                    }
-                    if let Some(boxes) = &boxes {
-                        self.check_background(cell, boxes, &mut work)?;
-                    }
-                }
+            match (self.evidence.cells[cell as usize].piece, &boxes) {
+                (Some(piece), _) => self.check_cone(cell, piece, &mut work)?,
+                (None, Some(boxes)) => self.check_background(cell, boxes, &mut work)?,
+                (None, None) => {}
             }
         }
         Ok(())
