@@ -77,7 +77,7 @@ pub enum ViewError {
 /// What a view took.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ViewStats {
-    /// Fragments, or whole pieces, put into the contour tree.
+    /// Fragments, or whole pieces and panels of pieces, put into the contour tree.
     pub inserted: usize,
     /// Subtrees of the 3D BSP, or of the hierarchy of boxes, that were left out because nothing in them can be seen.
     pub skipped_subtrees: usize,
