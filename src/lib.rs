@@ -30,6 +30,7 @@
 //! | [`bvh`] | a hierarchy of boxes: the second way to a view, without cutting polygons |
 //! | [`contour`] | the 2D BSP on the sphere of directions, contour images and their cells |
 //! | [`integral`] | solid angles and form factors of cells |
+//! | [`factors`] | form factors between patches: the matrix, row by row |
 //! | [`hemicube`] | baselines to compare with: the hemicube, with analytic form factors too, and rays |
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
 //! | [`io`] | reading scenes, writing results |
@@ -42,6 +43,7 @@ pub mod bsp;
 pub mod bvh;
 pub mod contour;
 pub mod exact;
+pub mod factors;
 pub mod hemicube;
 pub mod integral;
 pub mod io;
