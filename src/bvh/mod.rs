@@ -13,7 +13,7 @@ mod solids;
 use crate::bsp::{Bounds, PointId, Skeleton};
 use crate::scene::{PieceId, PieceRef, Scene, Side, VertexId};
 use glam::DVec3;
-use panels::Panels;
+use panels::{MOST_PIECES, Panels};
 pub(crate) use panels::{Panel, vertex};
 use solids::Solids;
 use std::ops::Range;
@@ -82,6 +82,30 @@ impl SceneBvh {
     }
 }
 
+/// A convex polygon that pieces of one plane make up together, turned one way.
+pub(crate) struct Facet {
+    /// The pieces, ascending.
+    pub(crate) pieces: Vec<PieceId>,
+    /// Its corners, counter-clockwise seen from its front.
+    pub(crate) ring: Vec<VertexId>,
+}
+
+/// The pieces of a scene joined to facets as large as that goes, of pieces that may be joined; ascending by their first pieces.
+pub(crate) fn facets(scene: &Scene, may_join: impl Fn(PieceId, PieceId) -> bool) -> Vec<Facet> {
+    let skeleton = Skeleton::new(scene);
+    let all: Vec<PieceId> = scene.pieces().map(PieceRef::id).collect();
+    let (panels, roots) = Panels::of(scene, &skeleton, &[&all], u32::MAX, may_join);
+    let facet = |&panel: &u32| {
+        let mut pieces = Vec::new();
+        panels.pieces(panel, &mut pieces);
+        pieces.sort_unstable();
+        Facet { pieces, ring: panels.sides(panel).iter().map(|side| vertex(side.point)).collect() }
+    };
+    let mut facets: Vec<Facet> = roots.iter().flatten().map(facet).collect();
+    facets.sort_unstable_by_key(|facet| facet.pieces[0]);
+    facets
+}
+
 /// The boxes around all pieces.
 fn bounds_of_pieces(scene: &Scene, skeleton: &Skeleton) -> Vec<Bounds> {
     let vertex = |&vertex: &VertexId| skeleton.approx_point(PointId(vertex.0));
@@ -92,7 +116,8 @@ impl Hierarchy {
     /// Panels and boxes for all pieces.
     fn new(scene: Scene, skeleton: Skeleton, solids: Solids) -> Self {
         let pieces: Vec<PieceId> = scene.pieces().map(PieceRef::id).collect();
-        let (panels, roots) = Panels::of(&scene, &skeleton, &[&pieces], |a, b| solids.are_hidden_together(a, b));
+        let (panels, roots) =
+            Panels::of(&scene, &skeleton, &[&pieces], MOST_PIECES, |a, b| solids.are_hidden_together(a, b));
         let roots = roots.into_iter().flatten().collect();
         let (nodes, order) = build::boxes(roots, |panel| panels.panel(panel).bounds);
         let built_cost = refit::cost(&panels, &nodes, &order, scene.piece_count());

@@ -1,6 +1,6 @@
 //! A hierarchy for a scene with objects moved, without building it anew.
 
-use super::panels::Panels;
+use super::panels::{MOST_PIECES, Panels};
 use super::{Hierarchy, SceneBvh, bounds_of_pieces, refit};
 use crate::scene::{MoveError, ObjectId, PieceId};
 use glam::DAffine3;
@@ -47,7 +47,8 @@ impl SceneBvh {
         let (mut nodes, groups) =
             refit::refit(&old.nodes, &old.order, |panel, found| old.panels.pieces(panel, found), &places);
         let groups: Vec<&[PieceId]> = groups.iter().map(Vec::as_slice).collect();
-        let (panels, groups) = Panels::of(&scene, &skeleton, &groups, |a, b| solids.are_hidden_together(a, b));
+        let (panels, groups) =
+            Panels::of(&scene, &skeleton, &groups, MOST_PIECES, |a, b| solids.are_hidden_together(a, b));
         let order = refit::fit(&mut nodes, &groups, |panel| panels.panel(panel).bounds);
         let hierarchy = Hierarchy { scene, skeleton, nodes, panels, order, solids, built_cost: old.built_cost };
         Ok(Self { hierarchy: Arc::new(hierarchy) })

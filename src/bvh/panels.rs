@@ -14,7 +14,7 @@ use std::collections::BinaryHeap;
 use std::ops::Range;
 
 /// A panel has at most so many pieces (docs/performance.md): what fills much of the image comes in parts with depths of their own.
-const MOST_PIECES: u32 = 64;
+pub(super) const MOST_PIECES: u32 = 64;
 /// Pieces with more sides are panels by themselves.
 const MOST_SIDES: usize = 16;
 
@@ -75,11 +75,13 @@ pub(crate) struct Panels {
 }
 
 impl Panels {
-    /// The panels of groups of pieces, and those that are no half of another one, by groups. `may_join` tells whether pieces may be in one panel.
+    /// The panels of groups of pieces, of at most so many each, and those that are no half of another one, by groups. `may_join` tells whether pieces may
+    /// be in one panel.
     pub(super) fn of(
         scene: &Scene,
         skeleton: &Skeleton,
         groups: &[&[PieceId]],
+        most_pieces: u32,
         may_join: impl Fn(PieceId, PieceId) -> bool,
     ) -> (Self, Vec<Vec<u32>>) {
         let mut panels = Self { panels: Vec::with_capacity(scene.piece_count()), sides: Vec::new() };
@@ -97,6 +99,7 @@ impl Panels {
             along: FxHashMap::default(),
             queue: BinaryHeap::new(),
             whole: FxHashSet::default(),
+            most_pieces,
             may_join,
         };
         let roots = groups.iter().map(|pieces| joiner.join(pieces)).collect();
@@ -124,10 +127,12 @@ impl Panels {
 
     /// The pieces of a panel.
     pub(crate) fn pieces(&self, panel: u32, found: &mut Vec<PieceId>) {
-        match self.panel(panel).halves {
-            None => found.push(self.panel(panel).piece),
-            // No deeper than a panel has pieces.
-            Some(halves) => halves.panels.into_iter().for_each(|half| self.pieces(half, found)),
+        let mut rest = vec![panel];
+        while let Some(panel) = rest.pop() {
+            match self.panel(panel).halves {
+                None => found.push(self.panel(panel).piece),
+                Some(halves) => rest.extend(halves.panels.into_iter().rev()),
+            }
         }
     }
 }
@@ -152,6 +157,7 @@ struct Joiner<'a, F> {
     queue: BinaryHeap<Pair>,
     /// Panels of the group that are no half of another one.
     whole: FxHashSet<u32>,
+    most_pieces: u32,
     may_join: F,
 }
 
@@ -193,7 +199,7 @@ impl<F: Fn(PieceId, PieceId) -> bool> Joiner<'_, F> {
             self.along.insert(ends, (panel, k as u32));
             let Some(&(other, at)) = self.along.get(&[ends[1], ends[0]]) else { continue };
             let pieces = [panel, other].map(|k| self.panels.panel(k).pieces).iter().sum();
-            if pieces > MOST_PIECES || other == panel || !self.whole.contains(&other) {
+            if pieces > self.most_pieces || other == panel || !self.whole.contains(&other) {
                 continue;
             }
             let [p, q] = ends.map(|end| self.position(end));

@@ -1,5 +1,32 @@
 //! Form factors between patches: the matrix of radiation exchange, row by row.
+//!
+//! F[i][j] is the part of what leaves the front of patch i, diffusely, that arrives at the front of patch j; what arrives at backs and
+//! what leaves the scene are told apart, so that every row sums to 1. See [`Exchange`].
+//!
+//! `docs/form-factors.md` tells how, with what accuracy and at what cost.
 
+mod blockers;
+mod closure;
+mod contour;
+mod cubature;
+mod element;
+mod element_row;
+mod error;
+mod exchange;
+mod facets;
+mod mesh;
+mod options;
+mod pair;
 mod row;
+mod seen;
+mod shaft;
+mod shape;
+mod tree;
 
+#[cfg(test)]
+mod tests;
+
+pub use error::ExchangeError;
+pub use exchange::Exchange;
+pub use options::{ExchangeOptions, PatchPlan, Sides};
 pub use row::{Entry, PatchInfo, Row, Share};

@@ -32,7 +32,7 @@ pub fn form_factor_of_units(boundary: &[UnitDirection], normal: DVec3) -> f64 {
 
 /// [`form_factor`] to a polygon whose vertices are unit vectors of `f64`, as corners of cells are. Their rounding moves each by
 /// 1e-16 as it is, so that as much again for their lengths does not matter.
-pub(super) fn form_factor_of_rounded(corners: &[DVec3], normal: UnitDirection) -> f64 {
+pub(crate) fn form_factor_of_rounded(corners: &[DVec3], normal: UnitDirection) -> f64 {
     // No corner is left out, and no arc is longer than 90 degrees.
     if arcs(corners).all(|[a, b]| a.dot(*b) > 0.0) {
         towards(normal, double_flux(corners))

@@ -14,6 +14,7 @@ mod unit;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use form_factor::form_factor_of_rounded;
 pub use form_factor::{form_factor, form_factor_of_units};
 pub use solid_angle::{solid_angle, solid_angle_of_units};
 pub use unit::UnitDirection;

@@ -195,6 +195,11 @@ impl Scene {
         report
     }
 
+    /// The pairs of polygons whose insides share area in one plane; false if there may be more.
+    pub(crate) fn coplanar_overlaps(&self) -> (Vec<CoplanarOverlap>, bool) {
+        overlaps::overlaps(self)
+    }
+
     fn note_edge(&self, group: &[Use], report: &mut MeshReport) {
         let edge = group[0].edge;
         let length = || distance(self.vertex(edge[0]), self.vertex(edge[1]));

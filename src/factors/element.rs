@@ -1,0 +1,158 @@
+//! Elements: the flat convex parts that patches are made of, and how a scene falls into them.
+
+use super::facets::Facets;
+use super::mesh;
+use super::row::PatchInfo;
+use super::shape::{Frame, area, centre, turn};
+use super::{ExchangeError, PatchPlan};
+use crate::scene::{PieceRef, PolygonId, Scene};
+use glam::{DVec2, DVec3};
+
+/// A flat convex part of a patch.
+pub(super) struct Element {
+    pub(super) patch: u32,
+    pub(super) facet: u32,
+    /// Its corners, counter-clockwise seen from its front.
+    pub(super) ring: Vec<DVec3>,
+    /// The same in the frame of its facet.
+    pub(super) flat: Vec<DVec2>,
+    /// Where it is in the frame of its facet.
+    pub(super) low: DVec2,
+    pub(super) high: DVec2,
+    pub(super) area: f64,
+    pub(super) centre: DVec3,
+    /// No corner is farther from the centre.
+    pub(super) radius: f64,
+    /// Points and weights that integrate polynomials of degree 3 over a parallelogram; the weights sum to the area.
+    pub(super) points: Vec<(DVec3, f64)>,
+}
+
+/// All patches and what they are made of.
+pub(super) struct Elements {
+    pub(super) patches: Vec<PatchInfo>,
+    pub(super) elements: Vec<Element>,
+    /// The elements of each patch.
+    pub(super) of_patch: Vec<Vec<u32>>,
+    /// The elements of each facet.
+    pub(super) of_facet: Vec<Vec<u32>>,
+    /// The plane of each facet.
+    pub(super) frames: Vec<Frame>,
+}
+
+impl Elements {
+    pub(super) fn of(scene: &Scene, facets: &Facets, plan: PatchPlan) -> Result<Self, ExchangeError> {
+        let frames: Vec<Frame> = facets.facets.iter().map(|facet| Frame::through(facet.spanning)).collect();
+        let mut all = Self {
+            patches: Vec::new(),
+            elements: Vec::new(),
+            of_patch: Vec::new(),
+            of_facet: vec![Vec::new(); frames.len()],
+            frames,
+        };
+        let mut of_object: Vec<Option<u32>> = vec![None; scene.objects().len()];
+        for polygon in scene.polygons() {
+            let name = polygon.object_name();
+            match plan {
+                PatchPlan::Polygons => {
+                    let patch = all.patch(name.to_owned(), polygon.id())?;
+                    polygon.pieces().for_each(|piece| {
+                        all.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.scale))
+                    });
+                }
+                PatchPlan::Objects => {
+                    let known = of_object[polygon.object().index()];
+                    let patch = known.map_or_else(|| all.patch(name.to_owned(), polygon.id()), Ok)?;
+                    of_object[polygon.object().index()] = Some(patch);
+                    polygon.pieces().for_each(|piece| {
+                        all.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.scale))
+                    });
+                }
+                PatchPlan::Mesh { longest_edge } => {
+                    for piece in polygon.pieces() {
+                        let outline: Vec<_> =
+                            piece.vertices().iter().map(|&id| (id, scene.vertex(id) * facets.scale)).collect();
+                        let facet = facets.of_piece[piece.id().index()];
+                        let frame = &all.frames[facet as usize];
+                        let parts = mesh::elements(&outline, frame, longest_edge * facets.scale)
+                            .map_err(|mesh::TooFine| ExchangeError::TooFine { polygon: polygon.id() })?;
+                        for part in parts {
+                            let patch = all.patch(name.to_owned(), polygon.id())?;
+                            all.add(patch, facet, part);
+                        }
+                    }
+                }
+            }
+        }
+        Ok(all)
+    }
+
+    fn patch(&mut self, name: String, polygon: PolygonId) -> Result<u32, ExchangeError> {
+        let number = u32::try_from(self.patches.len()).ok().filter(|&number| number < u32::MAX - 2);
+        let number = number.ok_or(ExchangeError::TooManyPatches)?;
+        self.patches.push(PatchInfo { name, polygon, area: 0.0 });
+        self.of_patch.push(Vec::new());
+        Ok(number)
+    }
+
+    fn add(&mut self, patch: u32, facet: u32, ring: Vec<DVec3>) {
+        let frame = &self.frames[facet as usize];
+        let flat: Vec<DVec2> = ring.iter().map(|&p| frame.flat(p)).collect();
+        let area = area(&ring);
+        if area == 0.0 {
+            return;
+        }
+        let centre = centre(&ring);
+        let element = Element {
+            patch,
+            facet,
+            low: flat.iter().fold(DVec2::INFINITY, |low, &p| low.min(p)),
+            high: flat.iter().fold(DVec2::NEG_INFINITY, |high, &p| high.max(p)),
+            area,
+            centre,
+            radius: ring.iter().fold(0.0, |radius, p| p.distance(centre).max(radius)),
+            points: points_of_degree_3(&ring, &flat),
+            ring,
+            flat,
+        };
+        let number = self.elements.len() as u32;
+        self.elements.push(element);
+        self.of_patch[patch as usize].push(number);
+        self.of_facet[facet as usize].push(number);
+        self.patches[patch as usize].area += area;
+    }
+}
+
+fn points(piece: PieceRef<'_>, scale: f64) -> Vec<DVec3> {
+    piece.points().map(|p| p * scale).collect()
+}
+
+/// Four points for each quadrilateral (the product of Gauss's rule of two points, in the bilinear chart) that a convex ring falls into.
+fn points_of_degree_3(ring: &[DVec3], flat: &[DVec2]) -> Vec<(DVec3, f64)> {
+    const GAUSS: [f64; 2] = [0.211_324_865_405_187_1, 0.788_675_134_594_812_9];
+    let mut points = Vec::new();
+    for quad in quads(ring.len()) {
+        let [a, b, c, d] = quad.map(|k| ring[k]);
+        let [p, q, r, s] = quad.map(|k| flat[k]);
+        for u in GAUSS {
+            for v in GAUSS {
+                let at = a.lerp(b, u).lerp(d.lerp(c, u), v);
+                let along_u = (q - p).lerp(r - s, v);
+                let along_v = (s - p).lerp(r - q, u);
+                points.push((at, 0.25 * along_u.perp_dot(along_v).abs()));
+            }
+        }
+    }
+    points
+}
+
+/// The quadrilaterals that a convex ring of so many corners falls into, as their corners; a triangle is one with its last corner twice.
+pub(super) fn quads(corners: usize) -> impl Iterator<Item = [usize; 4]> {
+    (1..corners.saturating_sub(1)).step_by(2).map(move |k| [0, k, k + 1, (k + 2).min(corners - 1)])
+}
+
+impl Element {
+    /// True if a point of the plane of its facet is in it.
+    pub(super) fn holds(&self, p: DVec2) -> bool {
+        super::shape::sides(&self.flat).all(|[a, b]| turn(a, b, p) >= 0.0)
+    }
+}

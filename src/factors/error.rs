@@ -1,0 +1,62 @@
+//! Why there are no form factors.
+
+use crate::scene::{PolygonId, SceneError};
+use glam::DVec3;
+
+/// Why there are no form factors between patches.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ExchangeError {
+    /// The tolerance is not a positive number.
+    #[error("the tolerance has to be a positive number, not {tolerance}")]
+    BadTolerance {
+        /// What was asked for.
+        tolerance: f64,
+    },
+    /// The longest edge is not a positive number.
+    #[error("the longest edge of a mesh has to be a positive number, not {longest_edge}")]
+    BadEdge {
+        /// What was asked for.
+        longest_edge: f64,
+    },
+    /// A polygon would fall into too many patches.
+    #[error("polygon {polygon} would fall into more than 4 million patches; take a longer edge")]
+    TooFine {
+        /// The polygon.
+        polygon: PolygonId,
+    },
+    /// There are more patches than can be numbered.
+    #[error("there are more than 4 billion patches; take a longer edge")]
+    TooManyPatches,
+    /// There is no patch of that number.
+    #[error("there is no patch {patch}: there are {count}, numbered from 0")]
+    UnknownPatch {
+        /// The number asked for.
+        patch: usize,
+        /// How many there are.
+        count: usize,
+    },
+    /// The pieces of the scene cannot be joined to facets.
+    #[error("the scene's polygons cannot be joined: {0}")]
+    Facets(SceneError),
+    /// A view cannot be taken.
+    #[error("no view from {point}: {problem}")]
+    NoView {
+        /// From where.
+        point: DVec3,
+        /// Why.
+        problem: String,
+    },
+    /// What a row lacks is more than the estimates of its errors.
+    #[error(
+        "row {patch} sums to 1 only up to {residue:e}, and estimates of its errors explain {estimates:e}; ask for a smaller tolerance"
+    )]
+    NotClosed {
+        /// The row.
+        patch: usize,
+        /// 1 less the sum.
+        residue: f64,
+        /// The sum of the estimates.
+        estimates: f64,
+    },
+}

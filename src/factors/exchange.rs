@@ -1,0 +1,167 @@
+//! The matrix, row by row.
+
+use super::blockers::Blockers;
+use super::closure::{TooLarge, place};
+use super::element::Elements;
+use super::element_row::{ElementRows, RowSpace};
+use super::facets::Facets;
+use super::row::{Entry, PatchInfo, Row, Share};
+use super::seen::{Columns, Looker};
+use super::tree::ElementTree;
+use super::{ExchangeError, ExchangeOptions, PatchPlan};
+use crate::parallel;
+use crate::scene::Scene;
+use std::collections::BTreeMap;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+/// Rows that are in memory at the same time.
+const CHUNK: usize = 256;
+/// A row that does not close within the estimates is computed anew this often, each time to a quarter of the tolerance.
+const ATTEMPTS: i32 = 3;
+
+/// Form factors between the patches of a scene.
+///
+/// Pairs of elements (the flat convex parts of patches) that see each other wholly, by exact tests of all that might be between them, are
+/// exchanged in closed form; what is seen in part is integrated over the element from exact views, and closes at every point of it.
+///
+/// ```
+/// use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan};
+/// use nusselt::samples::{Kind, generate};
+///
+/// let scene = generate(Kind::Room, 200, 1)?.to_builder().build()?;
+/// let exchange = Exchange::new(&scene, PatchPlan::Polygons, ExchangeOptions::default())?;
+/// let row = exchange.row(7)?;
+/// // Nothing leaves a closed room, and nothing is lost.
+/// assert!((row.sum() - 1.0).abs() < 1e-12 && row.background.factor < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct Exchange {
+    facets: Facets,
+    elements: Elements,
+    trees: Vec<ElementTree>,
+    options: ExchangeOptions,
+    /// Areas as they are in the scene.
+    patches: Vec<PatchInfo>,
+}
+
+impl Exchange {
+    /// Prepares the patches of a scene: about n log n time.
+    ///
+    /// # Errors
+    /// If an option is out of range or a mesh too fine.
+    pub fn new(scene: &Scene, plan: PatchPlan, options: ExchangeOptions) -> Result<Self, ExchangeError> {
+        let is_positive = |x: f64| x.is_finite() && x > 0.0;
+        if !is_positive(options.tolerance) {
+            return Err(ExchangeError::BadTolerance { tolerance: options.tolerance });
+        }
+        if let PatchPlan::Mesh { longest_edge } = plan
+            && !is_positive(longest_edge)
+        {
+            return Err(ExchangeError::BadEdge { longest_edge });
+        }
+        let facets = Facets::of(scene).map_err(ExchangeError::Facets)?;
+        let elements = Elements::of(scene, &facets, plan)?;
+        let trees = elements.of_facet.iter().map(|facet| ElementTree::of(&elements.elements, facet)).collect();
+        let mut patches = elements.patches.clone();
+        for patch in &mut patches {
+            patch.area = patch.area / facets.scale / facets.scale;
+        }
+        Ok(Self { facets, elements, trees, options, patches })
+    }
+
+    /// The patches, in the order of their numbers.
+    pub fn patches(&self) -> &[PatchInfo] {
+        &self.patches
+    }
+
+    /// One row. Its cost is that of some views and of pairs with all that is seen.
+    ///
+    /// # Errors
+    /// If there is no such patch, if a view has too many cells, or if the row does not close.
+    pub fn row(&self, patch: usize) -> Result<Row, ExchangeError> {
+        if patch >= self.patches.len() {
+            return Err(ExchangeError::UnknownPatch { patch, count: self.patches.len() });
+        }
+        self.row_in(patch, &mut RowSpace::new(&self.elements))
+    }
+
+    /// Rows in their order, computed by the threads of the current `rayon` pool with the feature `parallel`, and handed over one by one: a few hundred
+    /// are in memory at a time. They do not depend on the number of threads.
+    ///
+    /// # Errors
+    /// The first one that `take` gives, or as [`Exchange::row`].
+    pub fn rows<E: From<ExchangeError>>(
+        &self,
+        patches: Range<usize>,
+        mut take: impl FnMut(Row) -> Result<(), E>,
+    ) -> Result<(), E> {
+        if patches.end > self.patches.len() {
+            return Err(ExchangeError::UnknownPatch { patch: patches.end - 1, count: self.patches.len() }.into());
+        }
+        let spaces: Mutex<Vec<RowSpace>> = Mutex::new(Vec::new());
+        let free = || spaces.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut start = patches.start;
+        while start < patches.end {
+            let chunk: Vec<usize> = (start..patches.end.min(start + CHUNK)).collect();
+            start += chunk.len();
+            let rows = parallel::map(chunk, |patch| {
+                let space = free().pop();
+                let mut space = space.unwrap_or_else(|| RowSpace::new(&self.elements));
+                let row = self.row_in(patch, &mut space);
+                free().push(space);
+                row
+            });
+            for row in rows {
+                take(row?)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn row_in(&self, patch: usize, space: &mut RowSpace) -> Result<Row, ExchangeError> {
+        let mut attempt = 0;
+        loop {
+            let mut row = self.raw_row(patch, self.options.tolerance * 0.25_f64.powi(attempt), space)?;
+            if row.closure_raw == 0.0 {
+                return Ok(row);
+            }
+            match place(&mut row) {
+                Ok(()) => {
+                    row.entries.retain(|entry| entry.share.factor > 0.0);
+                    return Ok(row);
+                }
+                Err(_) if attempt < ATTEMPTS => attempt += 1,
+                Err(TooLarge { residue, estimates }) => {
+                    return Err(ExchangeError::NotClosed { patch, residue, estimates });
+                }
+            }
+        }
+    }
+
+    /// The row before its residue is placed.
+    fn raw_row(&self, patch: usize, tolerance: f64, space: &mut RowSpace) -> Result<Row, ExchangeError> {
+        let elements = &self.elements;
+        let blockers = Blockers { facets: &self.facets, elements, trees: &self.trees };
+        let looker = Looker { facets: &self.facets, elements, trees: &self.trees, sides: self.options.sides };
+        let rows = ElementRows { blockers, looker, most_views: self.options.most_views };
+        let area = elements.patches[patch].area;
+        let mut shares: BTreeMap<u32, Share> = BTreeMap::new();
+        for &element in &elements.of_patch[patch] {
+            let (row, _) = rows.row(element, tolerance, space)?;
+            let weight = elements.elements[element as usize].area / area;
+            for (column, share) in row {
+                let sum = shares.entry(column).or_default();
+                sum.factor += weight * share.factor;
+                sum.error += weight * share.error;
+            }
+        }
+        let columns = Columns { patches: elements.patches.len() as u32 };
+        let background = shares.remove(&columns.background()).unwrap_or_default();
+        let backs = shares.remove(&columns.backs()).unwrap_or_default();
+        let entries = shares.into_iter().map(|(column, share)| Entry { column, share }).collect();
+        let mut row = Row { patch: patch as u32, entries, backs, background, closure_raw: 0.0 };
+        row.closure_raw = row.sum();
+        Ok(row)
+    }
+}

@@ -1,0 +1,82 @@
+//! The scene as views of it are taken: pieces that are convex together in one plane, such as the patches of a wall, joined to facets.
+//!
+//! What a view costs is what there is to tell apart in it (docs/performance.md). Between patches of one facet there is nothing to tell
+//! apart for the eye: the part of a facet that is seen is divided among its patches afterwards, in its plane.
+
+use crate::bvh::{self, SceneBvh};
+use crate::contour::SceneOrder;
+use crate::scene::{FaceSpec, Material, PieceId, Scene, SceneError};
+use glam::DVec3;
+
+/// A scene whose polygons are the facets of another one.
+pub(super) struct Facets {
+    /// Takes views of the facets: polygon k is facet k.
+    pub(super) order: SceneOrder,
+    pub(super) facets: Vec<Facet>,
+    /// The facet that each piece of the scene is part of.
+    pub(super) of_piece: Vec<u32>,
+    /// The power of two by which all coordinates are multiplied, so that squares of lengths neither overflow nor vanish.
+    pub(super) scale: f64,
+}
+
+pub(super) struct Facet {
+    /// Its corners, counter-clockwise seen from its front.
+    pub(super) ring: Vec<DVec3>,
+    /// Three corners that are not in line, which run the same way.
+    pub(super) spanning: [DVec3; 3],
+    /// True if another facet may lie on part of it in its plane: which one is seen there takes a view.
+    pub(super) is_covered: bool,
+}
+
+impl Facets {
+    /// Joins the pieces of a scene.
+    ///
+    /// Of polygons that lie on each other in one plane, numbers decide which is seen: those stay as they are, and facets are in the order of
+    /// their first pieces.
+    pub(super) fn of(scene: &Scene) -> Result<Self, SceneError> {
+        let (overlaps, all) = scene.coplanar_overlaps();
+        let mut is_covered = vec![!all; scene.polygon_count()];
+        for polygon in overlaps.iter().flat_map(|overlap| overlap.polygons) {
+            is_covered[polygon.index()] = true;
+        }
+        let covered = |piece: PieceId| is_covered[scene.piece(piece).polygon().index()];
+        let joined = bvh::facets(scene, |a, b| !covered(a) && !covered(b));
+        let scale =
+            inverse_power_of_two(scene.bounds().map_or(1.0, |(low, high)| low.abs().max(high.abs()).max_element()));
+        let mut builder = Scene::builder();
+        let material = builder.add_material(Material::new("facet"));
+        let object = builder.add_object("facets");
+        for &position in scene.vertices() {
+            builder.add_vertex(position * scale);
+        }
+        let mut of_piece = vec![0; scene.piece_count()];
+        let mut facets = Vec::with_capacity(joined.len());
+        for (facet, joined) in joined.into_iter().enumerate() {
+            for piece in &joined.pieces {
+                of_piece[piece.index()] = facet as u32;
+            }
+            let ring: Vec<DVec3> = joined.ring.iter().map(|&vertex| scene.vertex(vertex) * scale).collect();
+            let spanning = spanning(&ring);
+            facets.push(Facet { ring, spanning, is_covered: covered(joined.pieces[0]) });
+            let ring = joined.ring.iter().map(|vertex| vertex.index()).collect();
+            builder.add_face(FaceSpec { rings: vec![ring], object, material });
+        }
+        let scene = builder.build()?;
+        Ok(Self { order: SceneBvh::build(&scene).into(), facets, of_piece, scale })
+    }
+}
+
+/// The power of two that brings a positive number near 1.
+fn inverse_power_of_two(x: f64) -> f64 {
+    let exponent = ((x.to_bits() >> 52) as i32 & 0x7ff) - 1023;
+    2.0_f64.powi(-exponent.clamp(-1000, 1000))
+}
+
+/// The corners of a convex ring that span the largest triangle with its first edge's start, in their order.
+fn spanning(ring: &[DVec3]) -> [DVec3; 3] {
+    let area = |a: usize, b: usize| (ring[a] - ring[0]).cross(ring[b] - ring[0]).length_squared();
+    let pairs = (1..ring.len()).flat_map(|a| (a + 1..ring.len()).map(move |b| (a, b)));
+    let best = pairs.max_by(|&(a, b), &(c, d)| area(a, b).total_cmp(&area(c, d)));
+    let (a, b) = best.unwrap_or((1, 2));
+    [ring[0], ring[a], ring[b]]
+}

@@ -1,0 +1,163 @@
+//! What is seen from one point of an element, by patches.
+
+use super::element::Elements;
+use super::facets::Facets;
+use super::shape::{Frame, clip, sides, turn};
+use super::tree::ElementTree;
+use super::{ExchangeError, Sides};
+use crate::contour::{Cell, ContourImage, Domain, ViewOptions, ViewSpace, Viewpoint};
+use crate::integral::{self, UnitDirection};
+use crate::scene::{PieceId, PolygonId, Side};
+use glam::{DVec2, DVec3};
+
+/// Takes views and tells patches apart in them.
+pub(super) struct Looker<'a> {
+    pub(super) facets: &'a Facets,
+    pub(super) elements: &'a Elements,
+    pub(super) trees: &'a [ElementTree],
+    pub(super) sides: Sides,
+}
+
+/// Memory that is used again.
+#[derive(Default)]
+pub(super) struct LookSpace {
+    view: ViewSpace,
+    flat: Vec<DVec2>,
+    parts: [Vec<DVec2>; 2],
+    corners: Vec<DVec3>,
+    stack: Vec<u32>,
+    met: Vec<u32>,
+}
+
+/// Columns of a row that are not patches come after them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Columns {
+    pub(super) patches: u32,
+}
+
+impl Columns {
+    pub(super) fn backs(self) -> u32 {
+        self.patches
+    }
+
+    pub(super) fn background(self) -> u32 {
+        self.patches + 1
+    }
+
+    pub(super) fn count(self) -> usize {
+        self.patches as usize + 2
+    }
+}
+
+impl Looker<'_> {
+    /// Looks from the point of a facet's front nearest to `point` and calls `share` with columns and what of the point's light they get, those of
+    /// elements for which `is_wanted` is false left out; `facet_seen` is called with every facet of which the front is seen.
+    pub(super) fn look(
+        &self,
+        space: &mut LookSpace,
+        facet: u32,
+        point: DVec3,
+        is_wanted: impl Fn(u32) -> bool,
+        mut share: impl FnMut(u32, f64),
+        mut facet_seen: impl FnMut(u32),
+    ) -> Result<(), ExchangeError> {
+        let scene = self.facets.order.scene();
+        let piece: PieceId = scene.polygon(PolygonId(facet)).pieces().next().map_or(PieceId(0), |piece| piece.id());
+        let fails = |problem: String| ExchangeError::NoView { point, problem };
+        let viewpoint =
+            Viewpoint::on_piece(scene, piece, Side::Front, point).map_err(|error| fails(error.to_string()))?;
+        let LookSpace { view, flat, parts, corners, stack, met } = space;
+        let image = self.facets.order.view_in(view, &viewpoint, &Domain::Above, &ViewOptions::default());
+        let image: &ContourImage = image.map_err(|error| fails(error.to_string()))?;
+        let normal = self.elements.frames[facet as usize].normal;
+        let Some(normal) = UnitDirection::new(normal) else { return Err(fails("the facet has no normal".to_owned())) };
+        let columns = Columns { patches: self.elements.patches.len() as u32 };
+        for cell in image.cells() {
+            let whole = |corners: &mut Vec<DVec3>| {
+                corners.clear();
+                corners.extend(cell.boundary());
+                integral::form_factor_of_rounded(corners, normal)
+            };
+            let (Some(seen), Some(side)) = (cell.polygon(), cell.side()) else {
+                share(columns.background(), whole(corners));
+                continue;
+            };
+            if side == Side::Back && self.sides == Sides::Fronts {
+                share(columns.backs(), whole(corners));
+                continue;
+            }
+            let target = seen.0;
+            if side == Side::Front {
+                facet_seen(target);
+            }
+            let of_facet = &self.elements.of_facet[target as usize];
+            // What is seen from behind is never left out.
+            let wanted = |element: u32| side == Side::Back || is_wanted(element);
+            let patch = |element: u32| self.elements.elements[element as usize].patch;
+            match of_facet[..] {
+                [] => share(columns.background(), whole(corners)),
+                [first, ref rest @ ..]
+                    if rest.iter().all(|&other| patch(other) == patch(first))
+                        && of_facet.iter().all(|&k| wanted(k)) =>
+                {
+                    share(patch(first), whole(corners));
+                }
+                _ => {
+                    let frame = &self.elements.frames[target as usize];
+                    flatten(cell, viewpoint.eye(), frame, flat);
+                    let (low, high) =
+                        flat.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+                    met.clear();
+                    self.trees[target as usize].meeting(low, high, stack, |element| {
+                        if wanted(element) {
+                            met.push(element);
+                        }
+                    });
+                    for &number in &*met {
+                        let element = &self.elements.elements[number as usize];
+                        if flat.iter().all(|&p| element.holds(p)) {
+                            share(element.patch, whole(corners));
+                            break;
+                        }
+                        let part = common(flat, &element.flat, parts);
+                        if part.len() >= 3 {
+                            corners.clear();
+                            corners.extend(part.iter().map(|&p| (frame.lift(p) - viewpoint.eye()).normalize_or_zero()));
+                            // As seen from outside of the sphere.
+                            if side == Side::Front {
+                                corners.reverse();
+                            }
+                            share(element.patch, integral::form_factor_of_rounded(corners, normal));
+                        }
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A cell where it is in the plane of the facet that is seen in it, counter-clockwise seen from the front.
+fn flatten(cell: Cell<'_>, eye: DVec3, frame: &Frame, flat: &mut Vec<DVec2>) {
+    flat.clear();
+    let height = frame.height(eye);
+    flat.extend(cell.boundary().map(|d| frame.flat(eye - d * (height / frame.normal.dot(d)))));
+    flat.retain(|p| p.is_finite());
+    if height > 0.0 {
+        flat.reverse();
+    }
+}
+
+/// What two convex polygons have in common.
+fn common<'a>(a: &[DVec2], b: &[DVec2], [part, cut]: &'a mut [Vec<DVec2>; 2]) -> &'a [DVec2] {
+    part.clear();
+    part.extend_from_slice(a);
+    for [p, q] in sides(b) {
+        clip(part, |r| turn(p, q, r), cut);
+        std::mem::swap(part, cut);
+        if part.len() < 3 {
+            break;
+        }
+    }
+    part
+}
