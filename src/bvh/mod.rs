@@ -15,6 +15,7 @@ use crate::scene::{PieceId, PieceRef, Scene, Side, VertexId};
 use glam::DVec3;
 use panels::{MOST_PIECES, Panels};
 pub(crate) use panels::{Panel, vertex};
+pub(crate) use solids::Solid;
 use solids::Solids;
 use std::ops::Range;
 use std::sync::Arc;
@@ -88,18 +89,23 @@ pub(crate) struct Facet {
     pub(crate) pieces: Vec<PieceId>,
     /// Its corners, counter-clockwise seen from its front.
     pub(crate) ring: Vec<VertexId>,
+    /// The solid that all of it is part of.
+    pub(crate) solid: Option<Solid>,
 }
 
 /// The pieces of a scene joined to facets as large as that goes, of pieces that may be joined; ascending by their first pieces.
 pub(crate) fn facets(scene: &Scene, may_join: impl Fn(PieceId, PieceId) -> bool) -> Vec<Facet> {
     let skeleton = Skeleton::new(scene);
+    let solids = Solids::of(scene, &skeleton, &bounds_of_pieces(scene, &skeleton));
     let all: Vec<PieceId> = scene.pieces().map(PieceRef::id).collect();
+    let may_join = |a, b| may_join(a, b) && solids.are_hidden_together(a, b);
     let (panels, roots) = Panels::of(scene, &skeleton, &[&all], u32::MAX, may_join);
     let facet = |&panel: &u32| {
         let mut pieces = Vec::new();
         panels.pieces(panel, &mut pieces);
         pieces.sort_unstable();
-        Facet { pieces, ring: panels.sides(panel).iter().map(|side| vertex(side.point)).collect() }
+        let ring = panels.sides(panel).iter().map(|side| vertex(side.point)).collect();
+        Facet { solid: solids.solid_of(pieces[0]), pieces, ring }
     };
     let mut facets: Vec<Facet> = roots.iter().flatten().map(facet).collect();
     facets.sort_unstable_by_key(|facet| facet.pieces[0]);

@@ -27,6 +27,15 @@ struct Component {
     inside: Option<Side>,
 }
 
+/// A closed and oriented part of a scene that does not pass through itself.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solid {
+    pub(crate) number: u32,
+    pub(crate) bounds: Bounds,
+    /// The side of its pieces that faces the inside.
+    pub(crate) inside: Side,
+}
+
 #[derive(Clone, Debug)]
 pub(super) struct Solids {
     components: Vec<Component>,
@@ -87,6 +96,13 @@ impl Solids {
         let outside = |b: &Bounds| (eye.cmplt(b.low) | eye.cmpgt(b.high)).any();
         let is_seen = |component: &Component| component.inside.is_some() && outside(&component.bounds);
         self.components.iter().map(is_seen).collect()
+    }
+
+    /// The solid that a piece is part of.
+    pub(super) fn solid_of(&self, piece: PieceId) -> Option<Solid> {
+        let component = self.component_of[piece.index()];
+        let Component { bounds, inside, .. } = self.components.get(component as usize)?;
+        inside.map(|inside| Solid { number: component, bounds: *bounds, inside })
     }
 
     /// True if [`Solids::is_inside`] says the same of both pieces, from wherever they are seen.

@@ -6,6 +6,7 @@ use super::shaft::{Blocks, Lies, Shaft, across};
 use super::tree::ElementTree;
 use crate::bvh::Content;
 use crate::contour::SceneOrder;
+use crate::scene::Side;
 use glam::DVec3;
 
 /// Where all facets are, seen from one.
@@ -154,6 +155,9 @@ impl Blockers<'_> {
             }
             let blocker = &self.facets.facets[number as usize];
             let lies = Lies::of(&target.ring, blocker.spanning);
+            if self.is_redundant(around, from, number) {
+                continue;
+            }
             let is_beside = around.lies(number).is_beside(lies);
             // What is behind the facet, or in its plane, hides nothing of it.
             let is_behind = || matches!(Lies::of(&blocker.ring, target.spanning), Lies::Behind | Lies::On);
@@ -162,6 +166,28 @@ impl Blockers<'_> {
             }
         }
         candidates
+    }
+
+    /// True if light from the element meets another facet of the solid that a facet is part of before it meets that one.
+    ///
+    /// Light that leaves a surface of which it sees the outside, or that it is outside of, gets to an inside through an outside only.
+    fn is_redundant(&self, around: &Around, from: &Element, facet: u32) -> bool {
+        let Some(solid) = self.facets.facets[facet as usize].solid else { return false };
+        let shown = match around.lies(facet) {
+            Lies::Front => Side::Front,
+            Lies::Behind => Side::Back,
+            Lies::On | Lies::Across => return false,
+        };
+        let own = self.facets.facets[around.facet as usize].solid;
+        if own.is_some_and(|own| own.number == solid.number) {
+            return shown == Side::Back;
+        }
+        let scale = self.facets.scale;
+        let (low, high) = (solid.bounds.low * scale, solid.bounds.high * scale);
+        let is_outside = |axis: usize| {
+            from.ring.iter().all(|p| p[axis] < low[axis]) || from.ring.iter().all(|p| p[axis] > high[axis])
+        };
+        shown == solid.inside && (0..3).any(is_outside)
     }
 
     /// What a facet does between an element and a ring, of which it is known how all of its facet lies to the plane of the blocker.

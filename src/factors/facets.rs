@@ -3,7 +3,7 @@
 //! What a view costs is what there is to tell apart in it (docs/performance.md). Between patches of one facet there is nothing to tell
 //! apart for the eye: the part of a facet that is seen is divided among its patches afterwards, in its plane.
 
-use crate::bvh::{self, SceneBvh};
+use crate::bvh::{self, SceneBvh, Solid};
 use crate::contour::SceneOrder;
 use crate::scene::{FaceSpec, Material, PieceId, Scene, SceneError};
 use glam::DVec3;
@@ -26,6 +26,8 @@ pub(super) struct Facet {
     pub(super) spanning: [DVec3; 3],
     /// True if another facet may lie on part of it in its plane: which one is seen there takes a view.
     pub(super) is_covered: bool,
+    /// The solid of the scene that it is part of; its box is that of the scene, not scaled.
+    pub(super) solid: Option<Solid>,
 }
 
 impl Facets {
@@ -57,7 +59,7 @@ impl Facets {
             }
             let ring: Vec<DVec3> = joined.ring.iter().map(|&vertex| scene.vertex(vertex) * scale).collect();
             let spanning = spanning(&ring);
-            facets.push(Facet { ring, spanning, is_covered: covered(joined.pieces[0]) });
+            facets.push(Facet { ring, spanning, is_covered: covered(joined.pieces[0]), solid: joined.solid });
             let ring = joined.ring.iter().map(|vertex| vertex.index()).collect();
             builder.add_face(FaceSpec { rings: vec![ring], object, material });
         }

@@ -4,8 +4,38 @@
 //! possible blocker, at the price of views.
 
 use super::shape::sides;
-use crate::exact::{Sign, orient3d};
-use glam::DVec3;
+use crate::exact::{Sign, U, orient3d};
+use glam::{DVec3, Vec3Swizzles};
+
+/// A plane through three points, for many signs.
+struct Plane {
+    points: [DVec3; 3],
+    normal: DVec3,
+    /// The sum of the absolute values of the products that each component of the normal is a difference of.
+    permanent: DVec3,
+}
+
+impl Plane {
+    fn through([a, b, c]: [DVec3; 3]) -> Self {
+        let (p, q) = (b - a, c - a);
+        let permanent = p.yzx().abs() * q.zxy().abs() + p.zxy().abs() * q.yzx().abs();
+        Self { points: [a, b, c], normal: p.cross(q), permanent }
+    }
+
+    /// The sign of `orient3d` of the three points and another one.
+    ///
+    /// The filter is that of `orient3d` (docs/numerics.md): the determinant is off by less than 10 u times the permanent, of factors that
+    /// neither over- nor underflow.
+    fn side(&self, p: DVec3) -> Sign {
+        let r = p - self.points[0];
+        let (det, permanent) = (self.normal.dot(r), self.permanent.dot(r.abs()));
+        if permanent > 1e-180 && permanent < 1e120 && r.abs().max_element() < 1e120 && det.abs() > 10.0 * U * permanent {
+            return if det > 0.0 { Sign::Positive } else { Sign::Negative };
+        }
+        let [a, b, c] = self.points;
+        if p == a || p == b || p == c { Sign::Zero } else { orient3d(a, b, c, p) }
+    }
+}
 
 /// On which side of a plane a polygon is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,10 +52,11 @@ pub(super) enum Lies {
 
 impl Lies {
     /// Of a ring, to the plane through three points.
-    pub(super) fn of(ring: &[DVec3], [a, b, c]: [DVec3; 3]) -> Self {
+    pub(super) fn of(ring: &[DVec3], plane: [DVec3; 3]) -> Self {
+        let plane = Plane::through(plane);
         let (mut front, mut behind) = (false, false);
         for &p in ring {
-            match orient3d(a, b, c, p) {
+            match plane.side(p) {
                 Sign::Positive => front = true,
                 Sign::Negative => behind = true,
                 Sign::Zero => {}
@@ -59,8 +90,8 @@ pub(super) enum Blocks {
 
 /// The shaft between two convex polygons.
 pub(super) struct Shaft {
-    /// Planes, by three points, that have both polygons in front of them or on them.
-    planes: Vec<[DVec3; 3]>,
+    /// Planes that have both polygons on one side of them or on them, and that side.
+    planes: Vec<(Plane, Sign)>,
     low: DVec3,
     high: DVec3,
 }
@@ -72,12 +103,11 @@ impl Shaft {
         let mut planes = Vec::new();
         for (ring, other) in [(i, j), (j, i)] {
             for [a, b] in sides(ring) {
-                // A plane along this side that touches the other polygon. There are two of them; the one turned to have all in front is one of these orders.
+                // A plane along this side that touches the other polygon.
                 for &c in other {
-                    for [a, b] in [[a, b], [b, a]] {
-                        if is_in_front(all(), [a, b, c]) {
-                            planes.push([a, b, c]);
-                        }
+                    let plane = Plane::through([a, b, c]);
+                    if let Some(side) = common_side(all(), &plane) {
+                        planes.push((plane, side));
                     }
                 }
             }
@@ -94,7 +124,7 @@ impl Shaft {
 
     /// True if a polygon is certainly outside, though it may touch.
     pub(super) fn excludes(&self, ring: &[DVec3]) -> bool {
-        let is_outside = |&[a, b, c]: &[DVec3; 3]| ring.iter().all(|&p| !orient3d(a, b, c, p).is_positive());
+        let is_outside = |(plane, side): &(Plane, Sign)| ring.iter().all(|&p| plane.side(p) != *side);
         let beyond = |axis: usize| {
             ring.iter().all(|p| p[axis] <= self.low[axis]) || ring.iter().all(|p| p[axis] >= self.high[axis])
         };
@@ -104,17 +134,18 @@ impl Shaft {
     }
 }
 
-/// True if no point is behind the plane and some are not on it.
-fn is_in_front(points: impl Iterator<Item = DVec3>, [a, b, c]: [DVec3; 3]) -> bool {
-    let mut some = false;
+/// The one side that all points are on that are not on the plane.
+fn common_side(points: impl Iterator<Item = DVec3>, plane: &Plane) -> Option<Sign> {
+    let mut common = Sign::Zero;
     for p in points {
-        match orient3d(a, b, c, p) {
-            Sign::Negative => return false,
-            Sign::Positive => some = true,
-            Sign::Zero => {}
+        let side = plane.side(p);
+        if common.is_zero() {
+            common = side;
+        } else if side == -common {
+            return None;
         }
     }
-    some
+    (!common.is_zero()).then_some(common)
 }
 
 /// What a convex polygon does between two others that are on opposite sides of its plane, `front` on the front or on it, `behind` behind or on it:
@@ -123,16 +154,17 @@ pub(super) fn across(front: &[DVec3], behind: &[DVec3], blocker: &[DVec3]) -> Bl
     let mut hides = true;
     for [a, b] in sides(blocker) {
         let (mut inside, mut outside) = (false, false);
-        for &p in front {
+        'lines: for &p in front {
+            let plane = Plane::through([a, b, p]);
             for &q in behind {
                 // Seen from the front, along p to q, a side that runs counter-clockwise has its inside to the left.
-                match orient3d(a, b, p, q) {
+                match plane.side(q) {
                     Sign::Positive => outside = true,
                     Sign::Negative => inside = true,
                     Sign::Zero => {}
                 }
                 if inside && outside {
-                    break;
+                    break 'lines;
                 }
             }
         }
