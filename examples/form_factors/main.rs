@@ -13,7 +13,15 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let start = Instant::now();
     let exchange = Exchange::new(&scene, PatchPlan::Polygons, ExchangeOptions { tolerance, ..Default::default() })?;
     println!("{} patches, set-up {:.3}", exchange.patches().len(), start.elapsed().as_secs_f64());
-    if words.get(2).is_some_and(|w| w == "check") { let tight = Exchange::new(&scene, PatchPlan::Polygons, ExchangeOptions { tolerance: tolerance * 1e-3, ..Default::default() })?; check(&exchange, &tight, &[0, 3, 10, 20, 30, 40, 50]); return Ok(()); }
+    if words.get(2).is_some_and(|w| w == "check") {
+        let tight = Exchange::new(
+            &scene,
+            PatchPlan::Polygons,
+            ExchangeOptions { tolerance: tolerance * 1e-3, ..Default::default() },
+        )?;
+        check(&exchange, &tight, &[0, 3, 10, 20, 30, 40, 50]);
+        return Ok(());
+    }
     let n = exchange.patches().len();
     let m = words.get(2).map_or(n, |w| w.parse().unwrap());
     let start = Instant::now();
@@ -26,7 +34,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         error = row.entries.iter().map(|e| e.share.error).fold(error, f64::max);
         Ok(())
     })?;
-    println!("rows {:.3} s, raw closure {worst:.2e}, closure {sum:.2e}, {entries} entries, worst estimate {error:.2e}", start.elapsed().as_secs_f64());
+    println!(
+        "rows {:.3} s, raw closure {worst:.2e}, closure {sum:.2e}, {entries} entries, worst estimate {error:.2e}",
+        start.elapsed().as_secs_f64()
+    );
     Ok(())
 }
 fn check(exchange: &Exchange, tight: &Exchange, rows: &[usize]) {

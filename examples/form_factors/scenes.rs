@@ -32,7 +32,14 @@ impl Quads {
     }
 
     /// The six faces of a box, fronts inside or outside, each in `cells` squared patches.
-    fn cuboid(&mut self, low: [f64; 3], high: [f64; 3], inside: bool, cells: usize, map: &impl Fn([f64; 3]) -> [f64; 3]) {
+    fn cuboid(
+        &mut self,
+        low: [f64; 3],
+        high: [f64; 3],
+        inside: bool,
+        cells: usize,
+        map: &impl Fn([f64; 3]) -> [f64; 3],
+    ) {
         for axis in 0..3 {
             let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
             for (value, outwards) in [(low[axis], false), (high[axis], true)] {
@@ -41,8 +48,12 @@ impl Quads {
                     (corner[u], corner[v]) = (p, q);
                     corner
                 };
-                let mut corners =
-                    [corner(low[u], low[v]), corner(high[u], low[v]), corner(high[u], high[v]), corner(low[u], high[v])];
+                let mut corners = [
+                    corner(low[u], low[v]),
+                    corner(high[u], low[v]),
+                    corner(high[u], high[v]),
+                    corner(low[u], high[v]),
+                ];
                 if outwards == inside {
                     corners = [corners[0], corners[3], corners[2], corners[1]];
                 }

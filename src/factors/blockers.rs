@@ -2,7 +2,7 @@
 
 use super::element::{Element, Elements};
 use super::facets::Facets;
-use super::shaft::{Blocks, Lies, Shaft, across};
+use super::shaft::{Blocker, Blocks, Lies, Shaft};
 use super::tree::ElementTree;
 use crate::bvh::Content;
 use crate::contour::SceneOrder;
@@ -51,8 +51,12 @@ pub(super) enum Seen {
     Wholly,
     /// From none.
     Never,
-    /// It takes views to tell.
+    /// What is between may hide part of it.
     Partly,
+    /// Likewise, and it has been integrated.
+    Integrated,
+    /// It takes views to tell.
+    Unknown,
 }
 
 /// Finds what is between an element and those of a facet.
@@ -62,57 +66,64 @@ pub(super) struct Blockers<'a> {
     pub(super) trees: &'a [ElementTree],
 }
 
-/// A node of the tree and what may block the view of it.
+/// A node of the tree, and which of the possible blockers may block the view of it.
 struct Visit {
     node: u32,
-    blockers: Vec<(u32, Lies)>,
+    blockers: Vec<u32>,
 }
 
 impl Blockers<'_> {
-    /// Calls `found` with the elements of a facet, which lies in front of the element's plane at least in part, and has it in front in part.
-    pub(super) fn classify(&self, around: &Around, from: &Element, facet: u32, mut found: impl FnMut(u32, Seen)) {
+    /// Calls `found` with the elements of a facet of which the front is seen, and with the facets that may be between if it takes views to tell.
+    pub(super) fn classify(
+        &self,
+        around: &Around,
+        from: &Element,
+        facet: u32,
+        mut found: impl FnMut(u32, Seen, &mut dyn Iterator<Item = u32>),
+    ) {
         let tree = &self.trees[facet as usize];
         let frame = &self.elements.frames[facet as usize];
         let Some(root) = tree.root() else { return };
-        let all = |found: &mut dyn FnMut(u32, Seen), node: u32, seen: Seen| {
-            tree.elements(node).iter().for_each(|&element| found(element, seen));
+        let mut all = |node: u32, seen: Seen, blockers: &[u32], candidates: &[Blocker]| {
+            for &element in tree.elements(node) {
+                found(element, seen, &mut blockers.iter().map(|&blocker| candidates[blocker as usize].facet));
+            }
         };
         if self.facets.facets[facet as usize].is_covered {
-            return all(&mut found, root, Seen::Partly);
+            return all(root, Seen::Unknown, &[], &[]);
         }
-        let mut ring = Vec::new();
-        let mut visits = vec![Visit { node: root, blockers: self.candidates(around, from, facet) }];
+        let target = &self.facets.facets[facet as usize];
+        let shaft = Shaft::between(&from.ring, &target.ring);
+        let candidates = self.candidates(around, from, facet, &shaft);
+        let mut corners = Vec::new();
+        let mut visits = vec![Visit { node: root, blockers: (0..candidates.len() as u32).collect() }];
         while let Some(Visit { node, mut blockers }) = visits.pop() {
-            if blockers.is_empty() {
-                all(&mut found, node, Seen::Wholly);
-                continue;
-            }
-            tree.ring(node, frame, &self.elements.elements, &mut ring);
-            let mut shaft = None;
+            let is_one = tree.halves(node).is_none();
             let mut is_hidden = false;
-            blockers.retain(|&(blocker, lies)| {
-                let blocks = !is_hidden && {
-                    match self.between(around, from, (&ring, lies), blocker) {
-                        Blocks::Nothing => false,
-                        Blocks::Everything => {
-                            is_hidden = true;
-                            true
-                        }
-                        Blocks::Unknown => {
-                            let shaft = shaft.get_or_insert_with(|| Shaft::between(&from.ring, &ring));
-                            !shaft.excludes(&self.facets.facets[blocker as usize].ring)
-                        }
+            if !blockers.is_empty() {
+                tree.corners(node, frame, &self.elements.elements, &mut corners);
+                blockers.retain(|&blocker| {
+                    is_hidden || {
+                        let blocks = candidates[blocker as usize].blocks(&corners);
+                        is_hidden = blocks == Blocks::Everything;
+                        blocks != Blocks::Nothing
                     }
+                });
+            }
+            // The planes of the shaft are for what it is worth: one element.
+            if is_one && !is_hidden && !blockers.is_empty() && tree.elements(root).len() > 1 {
+                let ring: Vec<DVec3> = corners.iter().map(|corner| corner.at).collect();
+                let shaft = Shaft::between(&from.ring, &ring);
+                let is_free = |&blocker: &u32| {
+                    let facet = candidates[blocker as usize].facet;
+                    !shaft.excludes(&self.facets.facets[facet as usize].ring)
                 };
-                blocks || is_hidden
-            });
-            if is_hidden {
-                all(&mut found, node, Seen::Never);
-                continue;
+                blockers.retain(is_free);
             }
             match tree.halves(node) {
-                _ if blockers.is_empty() => all(&mut found, node, Seen::Wholly),
-                None => all(&mut found, node, Seen::Partly),
+                _ if is_hidden => all(node, Seen::Never, &[], &[]),
+                _ if blockers.is_empty() => all(node, Seen::Wholly, &[], &[]),
+                None => all(node, Seen::Partly, &blockers, &candidates),
                 Some([first, second]) => {
                     visits.push(Visit { node: second, blockers: blockers.clone() });
                     visits.push(Visit { node: first, blockers });
@@ -121,13 +132,39 @@ impl Blockers<'_> {
         }
     }
 
-    /// The facets that may block light between an element and a whole facet, and how that facet lies to their planes.
-    fn candidates(&self, around: &Around, from: &Element, facet: u32) -> Vec<(u32, Lies)> {
+    /// The facets that may block light between an element and a whole facet.
+    fn candidates(&self, around: &Around, from: &Element, facet: u32, shaft: &Shaft) -> Vec<Blocker> {
         let target = &self.facets.facets[facet as usize];
+        let frame = &self.elements.frames[facet as usize];
+        let mut candidates = Vec::new();
+        for number in self.within(shaft) {
+            if number == around.facet
+                || number == facet
+                || matches!(around.facet_lies(number), Lies::Behind | Lies::On)
+                || self.is_redundant(around, from, number)
+            {
+                continue;
+            }
+            let blocker = &self.facets.facets[number as usize];
+            let own = match around.lies(number) {
+                Lies::Across => Lies::of(&from.ring, blocker.spanning),
+                lies => lies,
+            };
+            let lies = Lies::of(&target.ring, blocker.spanning);
+            // What is behind the facet, or in its plane, hides nothing of it.
+            let is_behind = || matches!(Lies::of(&blocker.ring, target.spanning), Lies::Behind | Lies::On);
+            if !own.is_beside(lies) && !is_behind() && !shaft.excludes(&blocker.ring) {
+                let what = (number, &blocker.ring[..], blocker.spanning);
+                candidates.push(Blocker::between(&from.ring, [own, lies], frame, what));
+            }
+        }
+        candidates
+    }
+
+    /// The facets in boxes that may meet a shaft, ascending.
+    fn within(&self, shaft: &Shaft) -> Vec<u32> {
         let SceneOrder::Boxes(bvh) = &self.facets.order else { unreachable!("views of facets are taken by boxes") };
         let hierarchy = &*bvh.hierarchy;
-        let shaft = Shaft::between(&from.ring, &target.ring);
-        let mut candidates = Vec::new();
         let mut stack: Vec<u32> = (0..hierarchy.nodes.len().min(1) as u32).collect();
         let mut pieces = Vec::new();
         while let Some(number) = stack.pop() {
@@ -148,24 +185,7 @@ impl Blockers<'_> {
         let mut numbers: Vec<u32> = pieces.into_iter().map(|piece| scene.piece(piece).polygon().0).collect();
         numbers.sort_unstable();
         numbers.dedup();
-        for number in numbers {
-            if number == around.facet || number == facet || matches!(around.facet_lies(number), Lies::Behind | Lies::On)
-            {
-                continue;
-            }
-            let blocker = &self.facets.facets[number as usize];
-            let lies = Lies::of(&target.ring, blocker.spanning);
-            if self.is_redundant(around, from, number) {
-                continue;
-            }
-            let is_beside = around.lies(number).is_beside(lies);
-            // What is behind the facet, or in its plane, hides nothing of it.
-            let is_behind = || matches!(Lies::of(&blocker.ring, target.spanning), Lies::Behind | Lies::On);
-            if !is_beside && !is_behind() && !shaft.excludes(&blocker.ring) {
-                candidates.push((number, lies));
-            }
-        }
-        candidates
+        numbers
     }
 
     /// True if light from the element meets another facet of the solid that a facet is part of before it meets that one.
@@ -188,24 +208,5 @@ impl Blockers<'_> {
             from.ring.iter().all(|p| p[axis] < low[axis]) || from.ring.iter().all(|p| p[axis] > high[axis])
         };
         shown == solid.inside && (0..3).any(is_outside)
-    }
-
-    /// What a facet does between an element and a ring, of which it is known how all of its facet lies to the plane of the blocker.
-    fn between(&self, around: &Around, from: &Element, (ring, lies): (&[DVec3], Lies), blocker: u32) -> Blocks {
-        let blocking = &self.facets.facets[blocker as usize];
-        let own = match around.lies(blocker) {
-            Lies::Across => Lies::of(&from.ring, blocking.spanning),
-            lies => lies,
-        };
-        let other = match lies {
-            Lies::Across => Lies::of(ring, blocking.spanning),
-            lies => lies,
-        };
-        match (own, other) {
-            (own, other) if own.is_beside(other) => Blocks::Nothing,
-            (Lies::Front, Lies::Behind) => across(&from.ring, ring, &blocking.ring),
-            (Lies::Behind, Lies::Front) => across(ring, &from.ring, &blocking.ring),
-            _ => Blocks::Unknown,
-        }
     }
 }

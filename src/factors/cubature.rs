@@ -21,8 +21,6 @@ pub(super) struct Part {
 #[derive(Debug, Default)]
 pub(super) struct Means {
     pub(super) parts: Vec<Part>,
-    /// How many points it took.
-    pub(super) points: usize,
 }
 
 /// A rule on the unit square: points, and weights for the fine and the coarse rule and for the differences in either direction.
@@ -136,25 +134,69 @@ impl Scratch {
     }
 }
 
-/// The means over a convex ring of what `look` finds at a point and hands over by columns. `allowed` is the error of the mean of each; no more than about `most` points
-/// are taken, and what the estimates are then is told.
-pub(super) fn means<E>(
-    ring: &[DVec3],
-    area: f64,
-    allowed: f64,
-    most: usize,
-    scratch: &mut Scratch,
-    mut look: impl FnMut(DVec3, &mut dyn FnMut(u32, f64)) -> Result<(), E>,
-) -> Result<Means, E> {
-    let whole: Vec<[DVec3; 4]> = quads(ring.len()).map(|quad| quad.map(|k| ring[k])).collect();
-    let mut points = 0;
-    let mut evaluate = |corners: [DVec3; 4], rule: &Rule, scratch: &mut Scratch| -> Result<Region, E> {
+/// Means over a convex ring of what `look` finds at a point and hands over by columns.
+pub(super) struct Cubature<'a, L> {
+    pub(super) ring: &'a [DVec3],
+    pub(super) area: f64,
+    /// The error of the mean that each column may have.
+    pub(super) allowed: f64,
+    pub(super) scratch: &'a mut Scratch,
+    pub(super) look: L,
+}
+
+impl<L, E> Cubature<'_, L>
+where
+    L: FnMut(DVec3, &mut dyn FnMut(u32, f64)) -> Result<(), E>,
+{
+    /// By a fixed number of points: a few, or those of 4 to the power of `halvings` parts.
+    pub(super) fn fixed(&mut self, halvings: Option<u32>) -> Result<Means, E> {
+        let mut parts: Vec<[DVec3; 4]> = quads(self.ring.len()).map(|quad| quad.map(|k| self.ring[k])).collect();
+        let rule = if halvings.is_some() { Rule::genz_malik() } else { Rule::first() };
+        for _ in 0..halvings.unwrap_or(0) {
+            for first in [true, false] {
+                parts = parts.into_iter().flat_map(|part| halves(part, first)).collect();
+            }
+        }
+        let regions = parts.iter().map(|&corners| self.region(corners, &rule)).collect::<Result<Vec<_>, E>>()?;
+        Ok(Means { parts: self.sum(&regions) })
+    }
+
+    /// By as many points as it takes, though not many more than `most`: the estimates tell whether that was enough.
+    pub(super) fn adaptive(&mut self, most: usize) -> Result<Means, E> {
+        let rule = Rule::genz_malik();
+        let mut waiting = BinaryHeap::new();
+        let mut totals = Totals { allowed: self.allowed, over: 0, touched: Vec::new() };
+        let mut points = 0;
+        let mut take = |this: &mut Self, corners: [DVec3; 4], totals: &mut Totals, waiting: &mut BinaryHeap<Region>| {
+            let region = this.region(corners, &rule)?;
+            region.parts.iter().for_each(|part| totals.add(&mut this.scratch.totals, part.column, part.error));
+            waiting.push(region);
+            points += rule.points.len();
+            Ok::<usize, E>(points)
+        };
+        let mut spent = 0;
+        for quad in quads(self.ring.len()) {
+            spent = take(self, quad.map(|k| self.ring[k]), &mut totals, &mut waiting)?;
+        }
+        while totals.over > 0 && spent < most {
+            let Some(region) = waiting.pop() else { break };
+            region.parts.iter().for_each(|part| totals.add(&mut self.scratch.totals, part.column, -part.error));
+            for half in halves(region.corners, region.halve_first) {
+                spent = take(self, half, &mut totals, &mut waiting)?;
+            }
+        }
+        totals.touched.iter().for_each(|&column| self.scratch.totals[column as usize] = 0.0);
+        let regions = waiting.into_sorted_vec();
+        Ok(Means { parts: self.sum(&regions) })
+    }
+
+    fn region(&mut self, corners: [DVec3; 4], rule: &Rule) -> Result<Region, E> {
         let [a, b, c, d] = corners;
+        let Self { area, scratch, look, .. } = self;
         for &([u, v], weights) in &rule.points {
             let point = a.lerp(b, u).lerp(d.lerp(c, u), v);
-            let density = (b - a).lerp(c - d, v).cross((d - a).lerp(c - b, u)).length() / area;
+            let density = (b - a).lerp(c - d, v).cross((d - a).lerp(c - b, u)).length() / *area;
             look(point, &mut |column, value| scratch.add(column, weights.map(|weight| weight * density * value)))?;
-            points += 1;
         }
         let mut differences = [0.0; 2];
         let parts = scratch.take().into_iter().map(|(column, [value, coarse, first, second])| {
@@ -163,7 +205,6 @@ pub(super) fn means<E>(
             Part { column, value, error: (value - coarse).abs() }
         });
         let parts: Vec<Part> = parts.collect();
-        let worst = parts.iter().fold(0.0, |worst: f64, part| worst.max(part.error));
         let sizes = [a.distance(b).max(d.distance(c)), a.distance(d).max(b.distance(c))];
         // Where there are no differences, across the longer sides.
         let halve_first = match differences[0].total_cmp(&differences[1]) {
@@ -171,58 +212,44 @@ pub(super) fn means<E>(
             Ordering::Less => false,
             Ordering::Equal => sizes[0] >= sizes[1],
         };
+        let worst = parts.iter().fold(0.0, |worst: f64, part| worst.max(part.error));
         Ok(Region { corners, parts, halve_first, worst })
-    };
-    let first: Vec<Region> =
-        whole.iter().map(|&corners| evaluate(corners, &Rule::first(), scratch)).collect::<Result<_, E>>()?;
-    let sum = |regions: &mut dyn Iterator<Item = &Region>, scratch: &mut Scratch| {
-        for part in regions.flat_map(|region| &region.parts) {
-            scratch.add(part.column, [part.value, part.error, 0.0, 0.0]);
+    }
+
+    /// Sums over regions, by ascending column.
+    fn sum(&mut self, regions: &[Region]) -> Vec<Part> {
+        for part in regions.iter().flat_map(|region| &region.parts) {
+            self.scratch.add(part.column, [part.value, part.error, 0.0, 0.0]);
         }
-        let sums = scratch.take().into_iter();
-        sums.map(|(column, [value, error, ..])| Part { column, value, error }).collect::<Vec<_>>()
-    };
-    let parts = sum(&mut first.iter(), scratch);
-    if parts.iter().all(|part| part.error <= allowed) {
-        return Ok(Means { parts, points });
+        let sums = self.scratch.take().into_iter();
+        sums.map(|(column, [value, error, ..])| Part { column, value, error }).collect()
     }
-    let rule = Rule::genz_malik();
-    let mut regions = BinaryHeap::new();
-    // How much is estimated for each column, and how many columns have too much.
-    let mut touched = Vec::new();
-    let mut over = 0usize;
-    let mut change = |totals: &mut [f64], part: &Part, sign: f64, over: &mut usize| {
-        let total = &mut totals[part.column as usize];
-        *over -= usize::from(*total > allowed);
-        *total = (*total + sign * part.error).max(0.0);
-        *over += usize::from(*total > allowed);
-        touched.push(part.column);
-    };
-    for corners in whole {
-        let region = evaluate(corners, &rule, scratch)?;
-        region.parts.iter().for_each(|part| change(&mut scratch.totals, part, 1.0, &mut over));
-        regions.push(region);
+}
+
+/// Counts the columns whose estimates sum to more than what is allowed.
+struct Totals {
+    allowed: f64,
+    over: usize,
+    touched: Vec<u32>,
+}
+
+impl Totals {
+    fn add(&mut self, totals: &mut [f64], column: u32, error: f64) {
+        let total = &mut totals[column as usize];
+        self.over -= usize::from(*total > self.allowed);
+        *total = (*total + error).max(0.0);
+        self.over += usize::from(*total > self.allowed);
+        self.touched.push(column);
     }
-    let mut spent = regions.len() * rule.points.len();
-    while over > 0 && spent < most {
-        let Some(region) = regions.pop() else { break };
-        region.parts.iter().for_each(|part| change(&mut scratch.totals, part, -1.0, &mut over));
-        let [a, b, c, d] = region.corners;
-        let halves = if region.halve_first {
-            let (low, high) = (a.lerp(b, 0.5), d.lerp(c, 0.5));
-            [[a, low, high, d], [low, b, c, high]]
-        } else {
-            let (left, right) = (a.lerp(d, 0.5), b.lerp(c, 0.5));
-            [[a, b, right, left], [left, right, c, d]]
-        };
-        for half in halves {
-            let region = evaluate(half, &rule, scratch)?;
-            region.parts.iter().for_each(|part| change(&mut scratch.totals, part, 1.0, &mut over));
-            regions.push(region);
-            spent += rule.points.len();
-        }
+}
+
+/// The halves of a quadrilateral, cut across its first or its second side.
+fn halves([a, b, c, d]: [DVec3; 4], first: bool) -> [[DVec3; 4]; 2] {
+    if first {
+        let (low, high) = (a.lerp(b, 0.5), d.lerp(c, 0.5));
+        [[a, low, high, d], [low, b, c, high]]
+    } else {
+        let (left, right) = (a.lerp(d, 0.5), b.lerp(c, 0.5));
+        [[a, b, right, left], [left, right, c, d]]
     }
-    touched.iter().for_each(|&column| scratch.totals[column as usize] = 0.0);
-    let regions = regions.into_sorted_vec();
-    Ok(Means { parts: sum(&mut regions.iter(), scratch), points })
 }

@@ -2,42 +2,105 @@
 
 use super::ExchangeError;
 use super::blockers::{Around, Blockers, Seen};
-use super::cubature::{Scratch, means};
+use super::cubature::{Cubature, Part, Scratch};
 use super::element::{Element, Elements};
+use super::hidden::{HiddenSpace, Target};
 use super::row::Share;
 use super::seen::{Columns, LookSpace, Looker};
 use super::shaft::Lies;
 use super::shape::clip;
-use super::{contour, pair};
-use std::collections::BTreeMap;
+use super::{Sides, contour, pair};
+use crate::integral::UnitDirection;
+use glam::DVec3;
+use std::convert::Infallible;
+use std::ops::Range;
 
 /// The part of the tolerance that entries which take no views may use up.
 const OF_TOLERANCE: f64 = 0.05;
+/// With more facets between than this, views are cheaper than cutting off shadows one by one.
+const MOST_BETWEEN: usize = 64;
+/// The views that all entries share are taken at more points until a row closes within so many tolerances.
+const CLOSE: f64 = 10.0;
+/// Though in no more parts than 4 to this power.
+const MOST_HALVINGS: u32 = 3;
 
 /// Memory that is used again from row to row.
 pub(super) struct RowSpace {
     look: LookSpace,
     scratch: Scratch,
+    hidden: HiddenSpace,
+    /// For integrals of one column.
+    single: Scratch,
     around: Option<Around>,
-    /// How each element is seen from the one at hand; partly unless it is known better.
+    found: Found,
+    /// Facets whose elements are told apart.
+    is_classified: Vec<bool>,
+    classified: Vec<u32>,
+    /// What each column gets.
+    shares: Vec<Share>,
+    columns: Vec<u32>,
+}
+
+/// How each element is seen from the one at hand.
+struct Found {
     seen: Vec<Seen>,
     known: Vec<u32>,
-    /// How many of the first views show each facet.
-    shown: Vec<u32>,
+    /// Where the facets that may be between are in a list.
+    between: Vec<Range<u32>>,
+    facets: Vec<u32>,
 }
 
 impl RowSpace {
     pub(super) fn new(elements: &Elements) -> Self {
-        let columns = Columns { patches: elements.patches.len() as u32 };
+        let columns = Columns { patches: elements.patches.len() as u32 }.count();
+        let found = Found {
+            seen: vec![Seen::Unknown; elements.elements.len()],
+            known: Vec::new(),
+            between: vec![0..0; elements.elements.len()],
+            facets: Vec::new(),
+        };
         Self {
             look: LookSpace::default(),
-            scratch: Scratch::new(columns.count()),
+            scratch: Scratch::new(columns),
+            hidden: HiddenSpace::default(),
+            single: Scratch::new(1),
             around: None,
-            seen: vec![Seen::Partly; elements.elements.len()],
-            known: Vec::new(),
-            shown: vec![0; elements.frames.len()],
+            found,
+            is_classified: vec![false; elements.frames.len()],
+            classified: Vec::new(),
+            shares: vec![Share::default(); columns],
+            columns: Vec::new(),
         }
     }
+
+    fn add(&mut self, column: u32, share: Share) {
+        let sum = &mut self.shares[column as usize];
+        if *sum == Share::default() {
+            self.columns.push(column);
+        }
+        sum.factor += share.factor;
+        sum.error += share.error;
+    }
+
+    /// Ends a row: what its columns have got, ascending.
+    fn take(&mut self) -> Vec<(u32, Share)> {
+        let Self { found, is_classified, classified, shares, columns, .. } = self;
+        found.known.drain(..).for_each(|element| found.seen[element as usize] = Seen::Unknown);
+        found.facets.clear();
+        classified.drain(..).for_each(|facet| is_classified[facet as usize] = false);
+        columns.sort_unstable();
+        columns.dedup();
+        columns.drain(..).map(|column| (column, std::mem::take(&mut shares[column as usize]))).collect()
+    }
+}
+
+/// How well a row is to be computed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Effort {
+    /// The absolute error allowed of each factor.
+    pub(super) tolerance: f64,
+    /// Whether all that may be seen is looked for, and not only what some views show.
+    pub(super) is_thorough: bool,
 }
 
 /// Computes rows of elements.
@@ -48,90 +111,203 @@ pub(super) struct ElementRows<'a> {
 }
 
 impl ElementRows<'_> {
-    /// The shares of all columns that get any, with factors to this absolute tolerance, and how many views that took.
+    /// The shares of all columns that get any, ascending, with factors to this absolute tolerance.
     pub(super) fn row(
         &self,
         number: u32,
-        tolerance: f64,
+        effort: Effort,
         space: &mut RowSpace,
-    ) -> Result<(BTreeMap<u32, Share>, usize), ExchangeError> {
+    ) -> Result<Vec<(u32, Share)>, ExchangeError> {
+        let result = self.fill(number, effort, space);
+        let shares = space.take();
+        result.map(|()| shares)
+    }
+
+    fn fill(&self, number: u32, effort: Effort, space: &mut RowSpace) -> Result<(), ExchangeError> {
+        let elements = self.blockers.elements;
+        let tolerance = effort.tolerance;
+        let from = &elements.elements[number as usize];
+        let around = match space.around.take() {
+            Some(around) if around.facet() == from.facet => around,
+            _ => Around::of(from.facet, self.blockers.facets),
+        };
+        space.around = Some(around);
+        let mut facets = Vec::new();
+        self.looker.look(&mut space.look, from.facet, from.centre, |_| false, |_, _| (), |facet| facets.push(facet))?;
+        if effort.is_thorough {
+            facets = self.in_front(space);
+        }
+        let allowed = tolerance * (1.0 - OF_TOLERANCE);
+        let mut halvings = None;
+        loop {
+            self.classify(number, std::mem::take(&mut facets), tolerance * OF_TOLERANCE, space);
+            if effort.is_thorough {
+                self.integrate_all(number, allowed, space);
+            }
+            if is_complete(space, tolerance) {
+                return Ok(());
+            }
+            let mut means = self.cubature(from, allowed, space).fixed(halvings)?;
+            let is_over = |part: &Part| part.error > allowed;
+            facets = self.facets_of(means.parts.iter().filter(|part| is_over(part)).map(|part| part.column), space);
+            if !facets.is_empty() {
+                continue;
+            }
+            means.parts.retain(|part| {
+                let is_local = is_over(part) && self.is_known(part.column, space);
+                if is_local {
+                    self.integrate(number, part.column, allowed, space);
+                }
+                !is_local
+            });
+            if means.parts.iter().any(is_over) {
+                means = self.cubature(from, allowed, space).adaptive(self.most_views)?;
+            }
+            let rest = means.parts.iter().map(|part| Share { factor: part.value.max(0.0), error: part.error });
+            let (sum, error) =
+                total(space.columns.iter().map(|&column| space.shares[column as usize]).chain(rest.clone()));
+            let is_closed = (sum - 1.0).abs() <= error.min(CLOSE * tolerance);
+            if is_closed || halvings == Some(MOST_HALVINGS) {
+                let columns: Vec<u32> = means.parts.iter().map(|part| part.column).collect();
+                columns.into_iter().zip(rest).for_each(|(column, share)| space.add(column, share));
+                return Ok(());
+            }
+            // What few views missed.
+            halvings = Some(halvings.map_or(0, |halvings| halvings + 1));
+        }
+    }
+
+    /// The facets whose fronts may be seen.
+    fn in_front(&self, space: &RowSpace) -> Vec<u32> {
+        let Some(around) = &space.around else { return Vec::new() };
+        let is_in_front = |lies: Lies| matches!(lies, Lies::Front | Lies::Across);
+        let facets = 0..self.blockers.facets.facets.len() as u32;
+        facets.filter(|&facet| is_in_front(around.lies(facet)) && is_in_front(around.facet_lies(facet))).collect()
+    }
+
+    /// Integrates all patches of which all that may hide parts of them is known.
+    fn integrate_all(&self, number: u32, allowed: f64, space: &mut RowSpace) {
+        let elements = self.blockers.elements;
+        let partly = space.found.known.iter().filter(|&&element| space.found.seen[element as usize] == Seen::Partly);
+        let mut columns: Vec<u32> = partly.map(|&element| elements.elements[element as usize].patch).collect();
+        columns.sort_unstable();
+        columns.dedup();
+        for column in columns {
+            if self.is_known(column, space) {
+                self.integrate(number, column, allowed, space);
+            }
+        }
+    }
+
+    /// Means of what views show that is not seen wholly or never.
+    fn cubature<'s>(
+        &'s self,
+        from: &'s Element,
+        allowed: f64,
+        space: &'s mut RowSpace,
+    ) -> Cubature<'s, impl FnMut(DVec3, &mut dyn FnMut(u32, f64)) -> Result<(), ExchangeError>> {
+        let RowSpace { look, scratch, found, .. } = space;
+        let takes_views = |element: u32| matches!(found.seen[element as usize], Seen::Partly | Seen::Unknown);
+        let look = move |point: DVec3, add: &mut dyn FnMut(u32, f64)| {
+            self.looker.look(look, from.facet, point, takes_views, add, |_| ())
+        };
+        Cubature { ring: &from.ring, area: from.area, allowed, scratch, look }
+    }
+
+    /// Finds the elements of facets that are seen wholly, which get their share, or never, and what may be between otherwise.
+    fn classify(&self, number: u32, mut facets: Vec<u32>, tolerance: f64, space: &mut RowSpace) {
         let elements = self.blockers.elements;
         let from = &elements.elements[number as usize];
-        if space.around.as_ref().is_none_or(|around| around.facet() != from.facet) {
-            space.around = Some(Around::of(from.facet, self.blockers.facets));
+        facets.sort_unstable();
+        facets.dedup();
+        let start = space.found.known.len();
+        for facet in facets {
+            space.is_classified[facet as usize] = true;
+            space.classified.push(facet);
+            let RowSpace { around: Some(around), found, .. } = &mut *space else { return };
+            self.blockers.classify(around, from, facet, |element, seen, between| {
+                let first = found.facets.len() as u32;
+                found.facets.extend(between);
+                found.between[element as usize] = first..found.facets.len() as u32;
+                found.seen[element as usize] = seen;
+                found.known.push(element);
+            });
         }
-        let mut shares: BTreeMap<u32, Share> = BTreeMap::new();
-        let mut views = self.tell_apart(from, space)?;
-        for element in std::mem::take(&mut space.known) {
-            if space.seen[element as usize] == Seen::Wholly {
-                let share = self.exchange(number, element, tolerance * OF_TOLERANCE, space);
-                let sum = shares.entry(elements.elements[element as usize].patch).or_default();
-                sum.factor += share.factor / from.area;
-                sum.error += share.error / from.area;
+        for k in start..space.found.known.len() {
+            let element = space.found.known[k];
+            if space.found.seen[element as usize] == Seen::Wholly {
+                let Share { factor, error } = self.exchange(number, element, tolerance, space);
+                let share = Share { factor: factor / from.area, error: error / from.area };
+                space.add(elements.elements[element as usize].patch, share);
             }
-            space.known.push(element);
         }
-        if !self.is_complete(&shares, tolerance) {
-            let RowSpace { look, scratch, seen, .. } = space;
-            let partly = |element: u32| seen[element as usize] == Seen::Partly;
-            let means = means(
-                &from.ring,
-                from.area,
-                tolerance * (1.0 - OF_TOLERANCE),
-                self.most_views,
-                scratch,
-                |point, add| self.looker.look(look, from.facet, point, partly, add, |_| ()),
-            )?;
-            views += means.points;
-            if std::env::var_os("NV").is_some() { eprintln!("views {views} known {} wholly {}", space.known.len(), space.known.iter().filter(|&&e| space.seen[e as usize]==Seen::Wholly).count()); }
+    }
+
+    /// The facets of patches that are not classified yet.
+    fn facets_of(&self, columns: impl Iterator<Item = u32>, space: &RowSpace) -> Vec<u32> {
+        let elements = self.blockers.elements;
+        let patches = columns.filter_map(|column| elements.of_patch.get(column as usize));
+        let facets = patches.flatten().map(|&element| elements.elements[element as usize].facet);
+        facets.filter(|&facet| !space.is_classified[facet as usize]).collect()
+    }
+
+    /// True if all that may hide parts of a patch is known, and it is seen from its front only.
+    fn is_known(&self, column: u32, space: &RowSpace) -> bool {
+        let elements = self.blockers.elements;
+        let Some(patch) = elements.of_patch.get(column as usize) else { return false };
+        patch.iter().all(|&element| {
+            let Found { seen, between, .. } = &space.found;
+            let facet = elements.elements[element as usize].facet;
+            let from_behind = || match &space.around {
+                Some(around) => around.lies(facet) != Lies::Front,
+                None => true,
+            };
+            seen[element as usize] != Seen::Unknown
+                && between[element as usize].len() <= MOST_BETWEEN
+                && (self.looker.sides == Sides::Fronts || !from_behind())
+        })
+    }
+
+    /// Adds the share of a patch, all that may hide parts of which is known, as far as it is not seen wholly. Views leave it out from now on.
+    fn integrate(&self, number: u32, column: u32, allowed: f64, space: &mut RowSpace) {
+        let elements = self.blockers.elements;
+        let from = &elements.elements[number as usize];
+        let frame = &elements.frames[from.facet as usize];
+        let Some(normal) = UnitDirection::new(frame.normal) else { return };
+        let RowSpace { hidden, single, around: Some(around), found, .. } = &mut *space else { return };
+        let partly: Vec<u32> = elements.of_patch[column as usize]
+            .iter()
+            .copied()
+            .filter(|&element| found.seen[element as usize] == Seen::Partly)
+            .collect();
+        let mut sum = Share::default();
+        for &element in &partly {
+            let target = &elements.elements[element as usize];
+            let Range { start, end } = found.between[element as usize];
+            let blockers = found.facets[start as usize..end as usize].iter().map(|&facet| {
+                (&self.blockers.facets.facets[facet as usize].ring[..], &elements.frames[facet as usize])
+            });
+            let target = Target {
+                element: target,
+                frame: &elements.frames[target.facet as usize],
+                horizon: (around.facet_lies(target.facet) == Lies::Across).then_some(frame),
+                normal,
+                blockers: blockers.collect(),
+            };
+            let look = |point: DVec3, add: &mut dyn FnMut(u32, f64)| {
+                add(0, target.factor(point, hidden));
+                Ok::<(), Infallible>(())
+            };
+            let allowed = allowed / partly.len() as f64;
+            let mut cubature = Cubature { ring: &from.ring, area: from.area, allowed, scratch: single, look };
+            let Ok(means) = cubature.adaptive(self.most_views);
+            found.seen[element as usize] = Seen::Integrated;
             for part in means.parts {
-                let sum = shares.entry(part.column).or_default();
                 sum.factor += part.value.max(0.0);
                 sum.error += part.error;
             }
         }
-        for element in space.known.drain(..) {
-            space.seen[element as usize] = Seen::Partly;
-        }
-        Ok((shares, views))
-    }
-
-    /// True if what is seen wholly is all there is, up to its errors and what may be neglected.
-    fn is_complete(&self, shares: &BTreeMap<u32, Share>, tolerance: f64) -> bool {
-        let (sum, error) =
-            shares.values().fold((0.0, 0.0), |(sum, error), share| (sum + share.factor, error + share.error));
-        (sum - 1.0_f64).abs() <= error.min(tolerance)
-    }
-
-    /// Finds the elements that are seen wholly or never. Looks from the middle of the element and of its parts to see which facets are worth it; the
-    /// number of views.
-    fn tell_apart(&self, from: &Element, space: &mut RowSpace) -> Result<usize, ExchangeError> {
-        let RowSpace { look, around, seen, known, shown, .. } = space;
-        let Some(around) = around.as_ref() else { return Ok(0) };
-        let mut facets = Vec::new();
-        let mut now = Vec::new();
-        let points = [from.centre];
-        for point in points {
-            self.looker.look(look, from.facet, point, |_| false, |_, _| (), |facet| now.push(facet))?;
-            now.sort_unstable();
-            now.dedup();
-            for facet in now.drain(..) {
-                shown[facet as usize] += 1;
-                facets.push(facet);
-            }
-        }
-        facets.sort_unstable();
-        facets.dedup();
-        for facet in facets {
-            shown[facet as usize] = 0;
-            self.blockers.classify(around, from, facet, |element, is_seen| {
-                if is_seen != Seen::Partly {
-                    seen[element as usize] = is_seen;
-                    known.push(element);
-                }
-            });
-        }
-        Ok(points.len())
+        space.add(column, sum);
     }
 
     /// A_i F_ij of an element that is seen wholly, from wherever its front is.
@@ -168,4 +344,15 @@ impl ElementRows<'_> {
             _ => Share::default(),
         }
     }
+}
+
+/// True if what has a share is all there is, up to errors and what may be neglected.
+fn is_complete(space: &RowSpace, tolerance: f64) -> bool {
+    let (sum, error) = total(space.columns.iter().map(|&column| space.shares[column as usize]));
+    (sum - 1.0).abs() <= error.min(tolerance)
+}
+
+/// The sums of factors and of errors.
+fn total(shares: impl Iterator<Item = Share>) -> (f64, f64) {
+    shares.fold((0.0, 0.0), |(sum, error), share| (sum + share.factor, error + share.error))
 }

@@ -3,7 +3,7 @@
 use super::blockers::Blockers;
 use super::closure::{TooLarge, place};
 use super::element::Elements;
-use super::element_row::{ElementRows, RowSpace};
+use super::element_row::{Effort, ElementRows, RowSpace};
 use super::facets::Facets;
 use super::row::{Entry, PatchInfo, Row, Share};
 use super::seen::{Columns, Looker};
@@ -11,14 +11,13 @@ use super::tree::ElementTree;
 use super::{ExchangeError, ExchangeOptions, PatchPlan};
 use crate::parallel;
 use crate::scene::Scene;
-use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 /// Rows that are in memory at the same time.
 const CHUNK: usize = 256;
-/// A row that does not close within the estimates is computed anew this often, each time to a quarter of the tolerance.
-const ATTEMPTS: i32 = 3;
+/// A row whose residue is larger than the estimates of its errors is computed anew, thoroughly, and to these parts of the tolerance.
+const ANEW: [f64; 3] = [1.0, 0.1, 0.01];
 
 /// Form factors between the patches of a scene.
 ///
@@ -120,9 +119,11 @@ impl Exchange {
     }
 
     fn row_in(&self, patch: usize, space: &mut RowSpace) -> Result<Row, ExchangeError> {
-        let mut attempt = 0;
-        loop {
-            let mut row = self.raw_row(patch, self.options.tolerance * 0.25_f64.powi(attempt), space)?;
+        let mut failure = None;
+        let first = Effort { tolerance: self.options.tolerance, is_thorough: false };
+        let anew = ANEW.map(|part| Effort { tolerance: self.options.tolerance * part, is_thorough: true });
+        for effort in std::iter::once(first).chain(anew) {
+            let mut row = self.raw_row(patch, effort, space)?;
             if row.closure_raw == 0.0 {
                 return Ok(row);
             }
@@ -131,35 +132,52 @@ impl Exchange {
                     row.entries.retain(|entry| entry.share.factor > 0.0);
                     return Ok(row);
                 }
-                Err(_) if attempt < ATTEMPTS => attempt += 1,
-                Err(TooLarge { residue, estimates }) => {
-                    return Err(ExchangeError::NotClosed { patch, residue, estimates });
+                Err(too_large) => {
+                    if std::env::var_os("NV").is_some() {
+                        eprintln!("{patch} {effort:?} {too_large:?}");
+                    }
+                    failure = Some(too_large)
                 }
             }
         }
+        let TooLarge { residue, estimates } = failure.unwrap_or(TooLarge { residue: 0.0, estimates: 0.0 });
+        Err(ExchangeError::NotClosed { patch, residue, estimates })
     }
 
     /// The row before its residue is placed.
-    fn raw_row(&self, patch: usize, tolerance: f64, space: &mut RowSpace) -> Result<Row, ExchangeError> {
+    fn raw_row(&self, patch: usize, effort: Effort, space: &mut RowSpace) -> Result<Row, ExchangeError> {
         let elements = &self.elements;
         let blockers = Blockers { facets: &self.facets, elements, trees: &self.trees };
         let looker = Looker { facets: &self.facets, elements, trees: &self.trees, sides: self.options.sides };
         let rows = ElementRows { blockers, looker, most_views: self.options.most_views };
         let area = elements.patches[patch].area;
-        let mut shares: BTreeMap<u32, Share> = BTreeMap::new();
+        let mut shares: Vec<(u32, Share)> = Vec::new();
         for &element in &elements.of_patch[patch] {
-            let (row, _) = rows.row(element, tolerance, space)?;
+            let row = rows.row(element, effort, space)?;
             let weight = elements.elements[element as usize].area / area;
-            for (column, share) in row {
-                let sum = shares.entry(column).or_default();
-                sum.factor += weight * share.factor;
-                sum.error += weight * share.error;
-            }
+            let weighted = |share: Share| Share { factor: weight * share.factor, error: weight * share.error };
+            shares.extend(row.into_iter().map(|(column, share)| (column, weighted(share))));
         }
+        // Stable, so that sums do not depend on anything but the order of elements.
+        shares.sort_by_key(|&(column, _)| column);
         let columns = Columns { patches: elements.patches.len() as u32 };
-        let background = shares.remove(&columns.background()).unwrap_or_default();
-        let backs = shares.remove(&columns.backs()).unwrap_or_default();
-        let entries = shares.into_iter().map(|(column, share)| Entry { column, share }).collect();
+        let (mut backs, mut background) = (Share::default(), Share::default());
+        let mut entries: Vec<Entry> = Vec::new();
+        for (column, share) in shares {
+            let sum = if column == columns.backs() {
+                &mut backs
+            } else if column == columns.background() {
+                &mut background
+            } else {
+                if entries.last().is_none_or(|entry| entry.column != column) {
+                    entries.push(Entry { column, share: Share::default() });
+                }
+                let Some(entry) = entries.last_mut() else { continue };
+                &mut entry.share
+            };
+            sum.factor += share.factor;
+            sum.error += share.error;
+        }
         let mut row = Row { patch: patch as u32, entries, backs, background, closure_raw: 0.0 };
         row.closure_raw = row.sum();
         Ok(row)

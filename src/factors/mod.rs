@@ -14,6 +14,7 @@ mod element_row;
 mod error;
 mod exchange;
 mod facets;
+mod hidden;
 mod mesh;
 mod options;
 mod pair;

@@ -3,9 +3,9 @@
 //! All decisions are exact signs of determinants of corners. What touches the shaft only from outside does not block; what cannot be told stays a
 //! possible blocker, at the price of views.
 
-use super::shape::sides;
+use super::shape::{Frame, sides};
 use crate::exact::{Sign, U, orient3d};
-use glam::{DVec3, Vec3Swizzles};
+use glam::{DVec2, DVec3, Vec3Swizzles};
 
 /// A plane through three points, for many signs.
 struct Plane {
@@ -29,7 +29,8 @@ impl Plane {
     fn side(&self, p: DVec3) -> Sign {
         let r = p - self.points[0];
         let (det, permanent) = (self.normal.dot(r), self.permanent.dot(r.abs()));
-        if permanent > 1e-180 && permanent < 1e120 && r.abs().max_element() < 1e120 && det.abs() > 10.0 * U * permanent {
+        if permanent > 1e-180 && permanent < 1e120 && r.abs().max_element() < 1e120 && det.abs() > 10.0 * U * permanent
+        {
             return if det > 0.0 { Sign::Positive } else { Sign::Negative };
         }
         let [a, b, c] = self.points;
@@ -54,13 +55,14 @@ impl Lies {
     /// Of a ring, to the plane through three points.
     pub(super) fn of(ring: &[DVec3], plane: [DVec3; 3]) -> Self {
         let plane = Plane::through(plane);
+        Self::of_signs(ring.iter().map(|&p| plane.side(p)))
+    }
+
+    fn of_signs(signs: impl Iterator<Item = Sign>) -> Self {
         let (mut front, mut behind) = (false, false);
-        for &p in ring {
-            match plane.side(p) {
-                Sign::Positive => front = true,
-                Sign::Negative => behind = true,
-                Sign::Zero => {}
-            }
+        for sign in signs {
+            front |= sign == Sign::Positive;
+            behind |= sign == Sign::Negative;
         }
         match (front, behind) {
             (true, true) => Self::Across,
@@ -148,32 +150,119 @@ fn common_side(points: impl Iterator<Item = DVec3>, plane: &Plane) -> Option<Sig
     (!common.is_zero()).then_some(common)
 }
 
-/// What a convex polygon does between two others that are on opposite sides of its plane, `front` on the front or on it, `behind` behind or on it:
-/// lines between corners pass its sides all inside, or one all outside, or it cannot be told.
-pub(super) fn across(front: &[DVec3], behind: &[DVec3], blocker: &[DVec3]) -> Blocks {
-    let mut hides = true;
-    for [a, b] in sides(blocker) {
-        let (mut inside, mut outside) = (false, false);
-        'lines: for &p in front {
-            let plane = Plane::through([a, b, p]);
-            for &q in behind {
-                // Seen from the front, along p to q, a side that runs counter-clockwise has its inside to the left.
-                match plane.side(q) {
-                    Sign::Positive => outside = true,
-                    Sign::Negative => inside = true,
-                    Sign::Zero => {}
-                }
-                if inside && outside {
-                    break 'lines;
-                }
-            }
+/// A point of a plane, and where it is in a frame of that plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Corner {
+    pub(super) at: DVec3,
+    pub(super) flat: DVec2,
+}
+
+/// The sides that a plane through three points has in another plane, in a frame of that.
+struct Line {
+    points: [DVec3; 3],
+    along: DVec2,
+    offset: f64,
+    /// The filter's bound is this times the sum of the lengths.
+    bound: f64,
+    length: f64,
+}
+
+impl Line {
+    /// Where the plane through three points meets that of the frame.
+    ///
+    /// The normal is off by at most 3 u times the sums of its products, its components along the frame by 4 u times those sums more, the
+    /// coordinates of a corner by 6 u times its distance from the origin of the frame, which may itself be off by as much; so that the sign is sure from 32 u
+    /// times all that on.
+    fn through(points: [DVec3; 3], frame: &Frame) -> Self {
+        let Plane { normal, permanent, .. } = Plane::through(points);
+        let to = frame.origin - points[0];
+        let (u, v) = frame.axes();
+        let along = DVec2::new(normal.dot(u), normal.dot(v));
+        let bound = 32.0 * U * permanent.element_sum();
+        let length = to.abs().element_sum() + frame.origin.abs().max_element() + points[0].abs().max_element();
+        Self { points, along, offset: normal.dot(to), bound, length }
+    }
+
+    fn side(&self, corner: &Corner) -> Sign {
+        let value = self.along.dot(corner.flat) + self.offset;
+        let bound = self.bound * (self.length + corner.flat.abs().element_sum());
+        // Not below what may have underflowed.
+        if value.abs() > bound && bound > 1e-180 {
+            return if value > 0.0 { Sign::Positive } else { Sign::Negative };
         }
-        if outside && !inside {
+        let ([a, b, c], p) = (self.points, corner.at);
+        if p == a || p == b || p == c { Sign::Zero } else { orient3d(a, b, c, p) }
+    }
+}
+
+/// A convex polygon that may be between an element and a facet.
+pub(super) struct Blocker {
+    pub(super) facet: u32,
+    /// Of the element to its plane, and of the facet.
+    lies: [Lies; 2],
+    /// Its own plane.
+    plane: Line,
+    /// Planes through its sides and the corners of the element, side by side.
+    lines: Vec<Line>,
+    corners: usize,
+}
+
+impl Blocker {
+    /// Between an element, all of which lies so to the plane of the blocker, and the facet with that frame, which lies so.
+    pub(super) fn between(
+        from: &[DVec3],
+        lies: [Lies; 2],
+        frame: &Frame,
+        (facet, ring, spanning): (u32, &[DVec3], [DVec3; 3]),
+    ) -> Self {
+        // Lines of sight are told apart only if all of them pass its plane one way.
+        let lines = match lies[0] {
+            Lies::Front | Lies::Behind => {
+                let lines = sides(ring).flat_map(|[a, b]| from.iter().map(move |&p| Line::through([a, b, p], frame)));
+                lines.collect()
+            }
+            Lies::On | Lies::Across => Vec::new(),
+        };
+        Self { facet, lies, plane: Line::through(spanning, frame), lines, corners: from.len() }
+    }
+
+    /// What it does to light from the element to a convex part of the facet: lines between corners pass its sides all inside, or one all outside, or
+    /// it cannot be told.
+    pub(super) fn blocks(&self, part: &[Corner]) -> Blocks {
+        let [own, whole] = self.lies;
+        let other = match whole {
+            Lies::Across => Lies::of_signs(part.iter().map(|corner| self.plane.side(corner))),
+            whole => whole,
+        };
+        if own.is_beside(other) {
             return Blocks::Nothing;
         }
-        hides &= !outside;
+        // Seen from its front, with the lines of sight going in, a side that runs counter-clockwise has its inside to the left.
+        let inside = match (own, other) {
+            (Lies::Front, Lies::Behind) => Sign::Negative,
+            (Lies::Behind, Lies::Front) => Sign::Positive,
+            _ => return Blocks::Unknown,
+        };
+        let mut hides = true;
+        for side in self.lines.chunks_exact(self.corners) {
+            let (mut all_inside, mut all_outside) = (true, true);
+            'lines: for line in side {
+                for corner in part {
+                    let sign = line.side(corner);
+                    all_outside &= sign != inside;
+                    all_inside &= sign != -inside;
+                    if !all_inside && !all_outside {
+                        break 'lines;
+                    }
+                }
+            }
+            if all_outside {
+                return Blocks::Nothing;
+            }
+            hides &= all_inside;
+        }
+        if hides { Blocks::Everything } else { Blocks::Unknown }
     }
-    if hides { Blocks::Everything } else { Blocks::Unknown }
 }
 
 #[cfg(test)]
@@ -188,14 +277,29 @@ mod tests {
     #[test]
     fn lines_pass_inside_outside_or_both() {
         let (front, behind) = (square(1.0, 1.0, [0.0; 2]), square(-1.0, 1.0, [0.0; 2]));
-        assert_eq!(across(&front, &behind, &square(0.0, 1.0, [0.0; 2])), Blocks::Everything);
-        assert_eq!(across(&front, &behind, &square(0.0, 0.999, [0.0; 2])), Blocks::Unknown);
-        assert_eq!(across(&front, &behind, &square(0.0, 0.5, [1.5, 0.0])), Blocks::Nothing);
-        assert_eq!(across(&front, &behind, &square(0.0, 0.5, [1.499, 0.0])), Blocks::Unknown);
+        let blocks = |front: &[DVec3], ring: &[DVec3], behind: &[DVec3]| {
+            let frame = Frame::through([behind[0], behind[1], behind[2]]);
+            let spanning = [ring[0], ring[1], ring[2]];
+            let lies = [Lies::of(front, spanning), Lies::of(behind, spanning)];
+            let blocker = Blocker::between(front, lies, &frame, (0, ring, spanning));
+            let corners: Vec<Corner> = behind.iter().map(|&at| Corner { at, flat: frame.flat(at) }).collect();
+            blocker.blocks(&corners)
+        };
+        // From either side.
+        for turned in [false, true] {
+            let blocks = |ring: &[DVec3]| {
+                let ring: Vec<DVec3> = if turned { ring.iter().rev().copied().collect() } else { ring.to_vec() };
+                blocks(&front, &ring, &behind)
+            };
+            assert_eq!(blocks(&square(0.0, 1.0, [0.0; 2])), Blocks::Everything);
+            assert_eq!(blocks(&square(0.0, 1.0_f64.next_down(), [0.0; 2])), Blocks::Unknown);
+            assert_eq!(blocks(&square(0.0, 0.5, [1.5, 0.0])), Blocks::Nothing);
+            assert_eq!(blocks(&square(0.0, 0.5, [1.5_f64.next_down(), 0.0])), Blocks::Unknown);
+        }
         // A small source seen past a large receiver: the shaft is narrower in the middle.
         let point = square(1.0, 0.0, [0.0; 2]);
-        assert_eq!(across(&point, &behind, &square(0.0, 0.5, [0.0; 2])), Blocks::Everything);
-        assert_eq!(across(&point, &behind, &square(0.0, 0.5, [1.0, 0.0])), Blocks::Nothing);
+        assert_eq!(blocks(&point, &square(0.0, 0.5, [0.0; 2]), &behind), Blocks::Everything);
+        assert_eq!(blocks(&point, &square(0.0, 0.5, [1.0, 0.0]), &behind), Blocks::Nothing);
     }
 
     #[test]

@@ -31,6 +31,11 @@ impl Frame {
         self.origin + self.u * p.x + self.v * p.y
     }
 
+    /// The unit vectors along its coordinates.
+    pub(super) fn axes(&self) -> (DVec3, DVec3) {
+        (self.u, self.v)
+    }
+
     /// The height of a point over the plane.
     pub(super) fn height(&self, p: DVec3) -> f64 {
         self.normal.dot(p - self.origin)

@@ -1,8 +1,9 @@
 //! The elements of a facet, halved again and again in its plane.
 
 use super::element::Element;
+use super::shaft::Corner;
 use super::shape::Frame;
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 use std::ops::Range;
 
 pub(super) struct ElementTree {
@@ -73,14 +74,16 @@ impl ElementTree {
     }
 
     /// The corners of the rectangle around a node, or of its one element.
-    pub(super) fn ring(&self, node: u32, frame: &Frame, elements: &[Element], ring: &mut Vec<DVec3>) {
-        ring.clear();
+    pub(super) fn corners(&self, node: u32, frame: &Frame, elements: &[Element], corners: &mut Vec<Corner>) {
+        corners.clear();
         if let [element] = self.elements(node) {
-            ring.extend_from_slice(&elements[*element as usize].ring);
+            let Element { ring, flat, .. } = &elements[*element as usize];
+            corners.extend(ring.iter().zip(flat).map(|(&at, &flat)| Corner { at, flat }));
             return;
         }
         let Node { low, high, .. } = self.nodes[node as usize];
-        ring.extend([low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)].map(|p| frame.lift(p)));
+        let rectangle = [low, DVec2::new(high.x, low.y), high, DVec2::new(low.x, high.y)];
+        corners.extend(rectangle.map(|flat| Corner { at: frame.lift(flat), flat }));
     }
 
     /// Calls `found` with all elements whose rectangles meet the given one.
