@@ -33,9 +33,28 @@ impl Plane {
         {
             return if det > 0.0 { Sign::Positive } else { Sign::Negative };
         }
-        let [a, b, c] = self.points;
-        if p == a || p == b || p == c { Sign::Zero } else { orient3d(a, b, c, p) }
+        exact_side(self.points, p)
     }
+}
+
+/// The sign of `orient3d`, where zero is likely.
+fn exact_side([a, b, c]: [DVec3; 3], p: DVec3) -> Sign {
+    if is_on_evidently([a, b, c], p) { Sign::Zero } else { orient3d(a, b, c, p) }
+}
+
+/// True if a point is on a plane for a reason that shows without arithmetic, as is the rule among things with axis-parallel sides: it is one of the three,
+/// in a plane of equal coordinates with all of them, or beside one of them in a direction that two of them are apart in.
+fn is_on_evidently([a, b, c]: [DVec3; 3], p: DVec3) -> bool {
+    let same = |p: DVec3, q: DVec3| p.cmpeq(q).bitmask();
+    let [ab, bc, ca] = [same(a, b), same(b, c), same(c, a)];
+    let to_p = [same(a, p), same(b, p), same(c, p)];
+    // For each axis, the bits of the others.
+    to_p.contains(&0b111)
+        || ab & bc & to_p[0] != 0
+        || [0b110, 0b101, 0b011].iter().any(|&others| {
+            let holds = |bits: &u32| bits & others == others;
+            [ab, bc, ca].iter().any(holds) && to_p.iter().any(holds)
+        })
 }
 
 /// On which side of a plane a polygon is.
@@ -190,8 +209,7 @@ impl Line {
         if value.abs() > bound && bound > 1e-180 {
             return if value > 0.0 { Sign::Positive } else { Sign::Negative };
         }
-        let ([a, b, c], p) = (self.points, corner.at);
-        if p == a || p == b || p == c { Sign::Zero } else { orient3d(a, b, c, p) }
+        exact_side(self.points, corner.at)
     }
 }
 
@@ -309,6 +327,30 @@ mod tests {
         assert!(!shaft.excludes(&square(0.0, 0.5, [1.999, 0.0])));
         assert!(shaft.excludes(&square(1.0, 5.0, [0.0; 2])));
         assert!(!shaft.excludes(&square(0.999, 5.0, [0.0; 2])));
+    }
+
+    #[test]
+    fn points_are_evidently_on_planes_that_hold_them() {
+        let on = |points: [[i32; 3]; 3], p: [i32; 3]| {
+            let [a, b, c, p] = [points[0], points[1], points[2], p].map(|p| DVec3::from(p.map(f64::from)));
+            let evident = is_on_evidently([a, b, c], p);
+            assert!(!evident || orient3d(a, b, c, p).is_zero(), "{points:?} {p}");
+            evident
+        };
+        assert!(on([[1, 2, 3], [4, 6, 5], [7, 7, 8]], [4, 6, 5]));
+        assert!(on([[1, 2, 3], [4, 6, 3], [7, 7, 3]], [9, 1, 3]));
+        assert!(on([[1, 2, 3], [1, 2, 5], [7, 7, 8]], [7, 7, 1]));
+        assert!(!on([[1, 2, 3], [1, 3, 5], [7, 7, 8]], [7, 7, 1]));
+        // All of a small grid: whatever is evident is so.
+        let point = |k: i32| [k % 2, k / 2 % 2, k / 4 % 3];
+        let places = || 0..12;
+        for a in places() {
+            for b in places() {
+                for c in places() {
+                    places().for_each(|p| _ = on([point(a), point(b), point(c)], point(p)));
+                }
+            }
+        }
     }
 
     #[test]
