@@ -2,7 +2,7 @@
 
 use super::ExchangeError;
 use super::blockers::{Around, Blockers, Seen};
-use super::cubature::{Cubature, Part, Scratch};
+use super::cubature::{Cubature, Division, Part, Scratch};
 use super::element::{Element, Elements};
 use super::hidden::{HiddenSpace, Target};
 use super::row::Share;
@@ -19,8 +19,9 @@ use std::ops::Range;
 const OF_TOLERANCE: f64 = 0.05;
 /// With more facets between than this, views are cheaper than cutting off shadows one by one.
 const MOST_BETWEEN: usize = 64;
-/// The views that all entries share are taken at more points until a row closes within so many tolerances.
-const CLOSE: f64 = 10.0;
+/// The views that all entries share are taken at more points until a row closes within so many tolerances: less than that is missing in entries that no view
+/// has shown.
+const CLOSE: f64 = 1.0;
 /// Though in no more parts than 4 to this power.
 const MOST_HALVINGS: u32 = 3;
 
@@ -101,6 +102,8 @@ pub(super) struct Effort {
     pub(super) tolerance: f64,
     /// Whether all that may be seen is looked for, and not only what some views show.
     pub(super) is_thorough: bool,
+    /// Whether views are taken at many points near the sides.
+    pub(super) towards_sides: bool,
 }
 
 /// Computes rows of elements.
@@ -138,7 +141,7 @@ impl ElementRows<'_> {
             facets = self.in_front(space);
         }
         let allowed = tolerance * (1.0 - OF_TOLERANCE);
-        let mut halvings = None;
+        let mut division = if effort.towards_sides { Division::TowardsSides } else { Division::None };
         loop {
             self.classify(number, std::mem::take(&mut facets), tolerance * OF_TOLERANCE, space);
             if effort.is_thorough {
@@ -147,7 +150,7 @@ impl ElementRows<'_> {
             if is_complete(space, tolerance) {
                 return Ok(());
             }
-            let mut means = self.cubature(from, allowed, space).fixed(halvings)?;
+            let mut means = self.cubature(from, allowed, space).fixed(division)?;
             let is_over = |part: &Part| part.error > allowed;
             facets = self.facets_of(means.parts.iter().filter(|part| is_over(part)).map(|part| part.column), space);
             if !facets.is_empty() {
@@ -167,13 +170,18 @@ impl ElementRows<'_> {
             let (sum, error) =
                 total(space.columns.iter().map(|&column| space.shares[column as usize]).chain(rest.clone()));
             let is_closed = (sum - 1.0).abs() <= error.min(CLOSE * tolerance);
-            if is_closed || halvings == Some(MOST_HALVINGS) {
+            let next = match division {
+                Division::None => Some(Division::Alike(0)),
+                Division::Alike(halvings) if halvings < MOST_HALVINGS => Some(Division::Alike(halvings + 1)),
+                Division::Alike(_) | Division::TowardsSides => None,
+            };
+            let Some(finer) = next.filter(|_| !is_closed) else {
                 let columns: Vec<u32> = means.parts.iter().map(|part| part.column).collect();
                 columns.into_iter().zip(rest).for_each(|(column, share)| space.add(column, share));
                 return Ok(());
-            }
+            };
             // What few views missed.
-            halvings = Some(halvings.map_or(0, |halvings| halvings + 1));
+            division = finer;
         }
     }
 

@@ -16,8 +16,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// Rows that are in memory at the same time.
 const CHUNK: usize = 256;
-/// A row whose residue is larger than the estimates of its errors is computed anew, thoroughly, and to these parts of the tolerance.
-const ANEW: [f64; 3] = [1.0, 0.1, 0.01];
+/// A row whose residue is larger than the estimates of its errors is computed anew, thoroughly: to these parts of the tolerance, and with or without many
+/// views from near its sides.
+const ANEW: [(f64, bool); 3] = [(1.0, false), (1.0, true), (0.1, true)];
 
 /// Form factors between the patches of a scene.
 ///
@@ -120,8 +121,10 @@ impl Exchange {
 
     fn row_in(&self, patch: usize, space: &mut RowSpace) -> Result<Row, ExchangeError> {
         let mut failure = None;
-        let first = Effort { tolerance: self.options.tolerance, is_thorough: false };
-        let anew = ANEW.map(|part| Effort { tolerance: self.options.tolerance * part, is_thorough: true });
+        let tolerance = self.options.tolerance;
+        let first = Effort { tolerance, is_thorough: false, towards_sides: false };
+        let anew =
+            ANEW.map(|(part, towards_sides)| Effort { tolerance: tolerance * part, is_thorough: true, towards_sides });
         for effort in std::iter::once(first).chain(anew) {
             let mut row = self.raw_row(patch, effort, space)?;
             if row.closure_raw == 0.0 {

@@ -24,9 +24,6 @@ mod shaft;
 mod shape;
 mod tree;
 
-#[cfg(test)]
-mod tests;
-
 pub use error::ExchangeError;
 pub use exchange::Exchange;
 pub use options::{ExchangeOptions, PatchPlan, Sides};

@@ -1,0 +1,130 @@
+//! Patches with nothing between.
+
+use super::references::{discs, graded, lambert, mean, opposed, perpendicular};
+use super::{TOLERANCES, all_rows, cuboid, exchange, factor, rectangle, scene_of};
+use glam::DVec3;
+use nusselt::factors::PatchPlan;
+use std::f64::consts::{PI, TAU};
+
+/// Both ways, with areas, to every tolerance.
+fn check(polygons: &[Vec<[f64; 3]>], expected: f64, area_ratio: f64) {
+    for tolerance in TOLERANCES {
+        let rows = all_rows(&exchange(&scene_of(polygons), PatchPlan::Polygons, tolerance));
+        let [there, back] = [factor(&rows[0], 1), factor(&rows[1], 0)];
+        assert!((there - expected).abs() <= tolerance, "{tolerance:e}: {there} instead of {expected}");
+        assert!((back - expected * area_ratio).abs() <= tolerance, "{tolerance:e}: {back} back");
+        for row in &rows {
+            assert!((row.sum() - 1.0).abs() <= 1e-12, "{row:?}");
+            assert!(row.entries.iter().all(|entry| entry.share.error <= tolerance), "{row:?}");
+        }
+    }
+}
+
+#[test]
+fn opposed_rectangles_are_those_of_the_catalogue_down_to_a_gap_of_a_thousandth() {
+    for (a, b, c) in [(1.0, 1.0, 1.0), (2.0, 0.5, 0.7), (1.0, 3.0, 0.1), (1.0, 1.0, 0.001), (1.0, 1.0, 30.0)] {
+        let below = rectangle([0.; 3], [a, 0., 0.], [0., b, 0.]);
+        let above = rectangle([0., 0., c], [0., b, 0.], [a, 0., 0.]);
+        check(&[below, above], opposed(a, b, c), 1.0);
+    }
+}
+
+#[test]
+fn rectangles_at_a_right_angle_are_those_of_the_catalogue() {
+    for (w, h, l) in [(1.0, 1.0, 1.0), (2.0, 0.5, 3.0), (0.1, 4.0, 1.0), (1.0, 0.01, 1.0)] {
+        let floor = rectangle([0.; 3], [w, 0., 0.], [0., l, 0.]);
+        let wall = rectangle([0.; 3], [0., l, 0.], [0., 0., h]);
+        check(&[floor, wall], perpendicular(w, h, l), w / h);
+    }
+}
+
+#[test]
+fn wedges_that_touch_along_an_edge_match_cubature_that_is_graded_towards_it() {
+    for degrees in [30.0_f64, 60.0, 90.0, 120.0, 150.0] {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let floor = rectangle([0.; 3], [1.0, 0., 0.], [0., 1.5, 0.]);
+        let leaf = rectangle([0.; 3], [0., 1.5, 0.], [0.8 * cos, 0., 0.8 * sin]);
+        let target: Vec<DVec3> = leaf.iter().rev().map(|&p| DVec3::from(p)).collect();
+        let places = graded();
+        let expected = mean(&places, &places, |u, v| lambert(DVec3::new(u, 1.5 * v, 0.0), DVec3::Z, &target).abs());
+        if degrees == 90.0 {
+            // The reference itself.
+            assert!((expected - perpendicular(1.0, 0.8, 1.5)).abs() < 1e-13);
+        }
+        check(&[floor, leaf], expected, 1.0 / 0.8);
+    }
+}
+
+#[test]
+fn a_tetrahedron_shares_alike_and_a_cube_as_the_catalogue_says() {
+    let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
+    let face = |a: usize, b: usize, c: usize| vec![corners[a], corners[b], corners[c]];
+    // Fronts inside.
+    let tetrahedron = [face(0, 2, 1), face(0, 1, 3), face(0, 3, 2), face(1, 2, 3)];
+    let cube = cuboid([0.; 3], [2.; 3], true);
+    for tolerance in TOLERANCES {
+        for (i, row) in all_rows(&exchange(&scene_of(&tetrahedron), PatchPlan::Polygons, tolerance)).iter().enumerate()
+        {
+            for j in 0..4 {
+                let expected = if i == j { 0.0 } else { 1.0 / 3.0 };
+                assert!((factor(row, j as u32) - expected).abs() <= tolerance, "{i} {j} {row:?}");
+            }
+        }
+        for (i, row) in all_rows(&exchange(&scene_of(&cube), PatchPlan::Polygons, tolerance)).iter().enumerate() {
+            for j in 0..6 {
+                let expected = match (i == j, i / 2 == j / 2) {
+                    (true, _) => 0.0,
+                    (false, true) => opposed(1.0, 1.0, 1.0),
+                    (false, false) => perpendicular(1.0, 1.0, 1.0),
+                };
+                assert!((factor(row, j as u32) - expected).abs() <= tolerance, "{i} {j} {row:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn polygons_with_many_corners_approach_discs() {
+    // Regular polygons of the discs' areas: what is left is of the fourth order in the angle between corners, at most its square.
+    let ring = |n: usize, radius: f64, z: f64, up: bool| {
+        let equal_area = radius * (TAU / n as f64 / (TAU / n as f64).sin()).sqrt();
+        let corner = |k: usize| {
+            let (sin, cos) = (k as f64 * TAU / n as f64).sin_cos();
+            [equal_area * cos, equal_area * sin, z]
+        };
+        let mut ring: Vec<[f64; 3]> = (0..n).map(corner).collect();
+        if !up {
+            ring.reverse();
+        }
+        ring
+    };
+    for (r1, r2, c) in [(1.0, 1.0, 1.0), (0.5, 2.0, 1.0), (1.0, 0.3, 0.4)] {
+        let expected = discs(r1, r2, c);
+        let off = |n: usize| {
+            let polygons = [ring(n, r1, 0.0, true), ring(n, r2, c, false)];
+            let rows = all_rows(&exchange(&scene_of(&polygons), PatchPlan::Polygons, 1e-10));
+            (factor(&rows[0], 1) - expected).abs()
+        };
+        let (coarse, fine) = (off(16), off(48));
+        assert!(fine < coarse / 8.0 && fine < (PI / 48.0).powi(2) * expected, "{coarse:e} {fine:e}");
+    }
+}
+
+#[test]
+fn a_cube_in_a_cube_gets_its_share_of_the_area() {
+    let mut polygons = cuboid([0.; 3], [3.; 3], true);
+    polygons.extend(cuboid([1.; 3], [2.; 3], false));
+    let scene = scene_of(&polygons);
+    for tolerance in TOLERANCES {
+        let rows = all_rows(&exchange(&scene, PatchPlan::Polygons, tolerance));
+        let sum =
+            |row: usize, columns: std::ops::Range<u32>| columns.map(|column| factor(&rows[row], column)).sum::<f64>();
+        // All that leaves the inner one arrives at the outer one; and by symmetry each outer face sees a sixth of what that exchanges.
+        for inner in 6..12 {
+            assert!((sum(inner, 0..6) - 1.0).abs() <= 1e-12);
+        }
+        for outer in 0..6 {
+            assert!((sum(outer, 6..12) - 1.0 / 9.0).abs() <= 6.0 * tolerance, "{tolerance:e}: {}", sum(outer, 6..12));
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! References: closed forms from the catalogue of Howell, and cubature of the factor from a point to a polygon, where all kinks are known.
+
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// Directly opposed rectangles a x b at distance c (C-11).
+pub(crate) fn opposed(a: f64, b: f64, c: f64) -> f64 {
+    let (x, y) = (a / c, b / c);
+    let (x1, y1) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    2.0 / (PI * x * y)
+        * ((x1 * y1 / (1.0 + x * x + y * y).sqrt()).ln() + x * y1 * (x / y1).atan() + y * x1 * (y / x1).atan()
+            - x * x.atan()
+            - y * y.atan())
+}
+
+/// From a rectangle w x l to one h x l at a right angle, along the common edge l (C-14).
+pub(crate) fn perpendicular(w: f64, h: f64, l: f64) -> f64 {
+    let (w, h) = (w / l, h / l);
+    let (w2, h2) = (w * w, h * h);
+    let logarithm = ((1.0 + w2) * (1.0 + h2) / (1.0 + w2 + h2)).ln()
+        + w2 * (w2 * (1.0 + w2 + h2) / ((1.0 + w2) * (w2 + h2))).ln()
+        + h2 * (h2 * (1.0 + h2 + w2) / ((1.0 + h2) * (h2 + w2))).ln();
+    let diagonal = (h2 + w2).sqrt();
+    (w * (1.0 / w).atan() + h * (1.0 / h).atan() - diagonal * (1.0 / diagonal).atan() + 0.25 * logarithm) / (PI * w)
+}
+
+/// Coaxial discs of these radii at distance c (C-41).
+pub(crate) fn discs(r1: f64, r2: f64, c: f64) -> f64 {
+    let (a, b) = (r1 / c, r2 / c);
+    let x = 1.0 + (1.0 + b * b) / (a * a);
+    0.5 * (x - (x * x - 4.0 * (b / a) * (b / a)).sqrt())
+}
+
+/// From a point with a unit normal to a polygon wholly above its horizon, counter-clockwise seen from the point's side of it (Lambert).
+pub(crate) fn lambert(x: DVec3, n: DVec3, polygon: &[DVec3]) -> f64 {
+    let pairs = polygon.iter().zip(polygon.iter().cycle().skip(1));
+    let terms = pairs.map(|(&a, &b)| {
+        let (a, b) = (a - x, b - x);
+        let cross = b.cross(a);
+        let s = cross.length();
+        if s == 0.0 { 0.0 } else { s.atan2(a.dot(b)) / s * cross.dot(n) }
+    });
+    terms.sum::<f64>() / TAU
+}
+
+/// Points and weights of Gauss and Legendre of order 10 on 0..1.
+fn gauss() -> [(f64, f64); 10] {
+    let half = [
+        (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
+        (0.433_395_394_129_247_2, 0.269_266_719_309_996_4),
+        (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
+        (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
+        (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
+    ];
+    std::array::from_fn(|k| {
+        let (x, weight) = half[k / 2];
+        (if k % 2 == 0 { 0.5 + 0.5 * x } else { 0.5 - 0.5 * x }, 0.5 * weight)
+    })
+}
+
+/// The mean over the unit square, between these places.
+pub(crate) fn mean(us: &[f64], vs: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut sum = 0.0;
+    for u in us.windows(2) {
+        for v in vs.windows(2) {
+            for (s, weight_s) in gauss() {
+                for (t, weight_t) in gauss() {
+                    let (width, height) = (u[1] - u[0], v[1] - v[0]);
+                    sum += weight_s * weight_t * width * height * f(u[0] + s * width, v[0] + t * height);
+                }
+            }
+        }
+    }
+    sum
+}
+
+/// Places from 0 to 1 that come closer and closer to both ends, to where a function of the distance is smooth between them.
+pub(crate) fn graded() -> Vec<f64> {
+    let halves = (0..40).map(|k| 0.5_f64.powi(40 - k));
+    let low: Vec<f64> = std::iter::once(0.0).chain(halves).collect();
+    let high = low.iter().rev().skip(1).map(|x| 1.0 - x);
+    low.iter().copied().chain(high).collect()
+}
