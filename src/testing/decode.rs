@@ -1,6 +1,6 @@
 //! Cases from bytes, for fuzzing: every input means something, and means the same for ever.
 
-use super::{Case, Faces, Mode, Outlook, nudged};
+use super::{Case, CaseWindows, Faces, Mode, Outlook, nudged};
 use crate::scene::Side;
 use arbitrary::{Arbitrary, Unstructured};
 use glam::DVec3;
@@ -29,7 +29,7 @@ impl Case {
     ///
     /// Kinds of eyes (remainder by 6): 0 to 2 free, 3 on a vertex, 4 in the middle of an edge, 5 in a plane.
     ///
-    /// Outlook: 0 to 3 sphere, 4, 5 hemisphere, 6 above the front of the face named with the eye, 7 above its back.
+    /// Outlook: 0, 1 sphere, 2 a frustum, 3 windows, 4, 5 hemisphere, 6 above the front of the face named with the eye, 7 above its back.
     ///
     /// Operations (remainder by 10): 0, 1 a triangle of three points; 2 a triangle that shares two
     /// corners of an earlier face; 3 a parallelogram of three points (two triangles in chaos mode); 4 a box;
@@ -57,6 +57,13 @@ impl Case {
         let eye = eye(free, [kind, face, corner], &faces);
         let face = usize::from(face) % faces.len().max(1);
         let outlook = match head >> 4 & 7 {
+            // What else there is to choose comes from the eye and the direction.
+            2 => Outlook::Frustum(1 + (direction.x.to_bits() >> 44) as u8 % 179),
+            3 => Outlook::Windows(CaseWindows {
+                faces: [face, face + 1],
+                with_moved: direction.y < 0.0,
+                within_hemisphere: eye.x < 0.0,
+            }),
             4 | 5 => Outlook::Hemisphere,
             6 if !faces.is_empty() => Outlook::Above(face, Side::Front),
             7 if !faces.is_empty() => Outlook::Above(face, Side::Back),

@@ -65,6 +65,7 @@ fn nudged(evidence: &Evidence, scene: &Scene, splitter: usize, how: u8) -> Split
     let from_eye = |v| scene.vertex(v) - evidence.eye;
     let normal = match evidence.splitters[splitter] {
         Splitter::Edge([a, b]) => from_eye(a).cross(from_eye(b)),
+        Splitter::Points([a, b]) => (a - evidence.eye).cross(b - evidence.eye),
         Splitter::Given(normal) => normal,
         same @ (Splitter::Crease(_) | Splitter::Parallel(_)) => return same,
     };

@@ -7,6 +7,7 @@ use super::super::image::ContourImage;
 use super::super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
 use super::super::tree::{Filler, Link, Verdict};
 use super::super::viewpoint::Viewpoint;
+use super::super::windows::Pane;
 use super::space::Buffers;
 use super::{Sight, ViewError, ViewOptions, ViewSpace};
 use crate::bsp::{Bounds, FragmentSide, LineId};
@@ -66,8 +67,8 @@ impl SceneBvh {
     ) -> Result<ContourImage, ViewError> {
         let hierarchy = &*self.hierarchy;
         let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options, space)?;
-        let from_outside = hierarchy.solids_seen_from_outside(sight.eye);
-        let mut walk = Walk { hierarchy, sight, from_outside, creases: FxHashMap::default(), parts: Vec::new() };
+        let mut walk = Walk { hierarchy, sight, creases: FxHashMap::default(), parts: Vec::new() };
+        walk.put_in_windows(domain);
         walk.run(options.max_cells)?;
         Ok(walk.sight.finish(self.clone().into(), viewpoint, domain, space))
     }
@@ -76,7 +77,6 @@ impl SceneBvh {
 struct Walk<'a> {
     hierarchy: &'a Hierarchy,
     sight: Sight<'a>,
-    from_outside: Vec<bool>,
     creases: FxHashMap<[PlaneId; 2], CircleId>,
     /// Leaves in which a panel is seen, its pieces not told apart yet.
     parts: Vec<(u32, u32)>,
@@ -142,6 +142,19 @@ impl Walk<'_> {
         self.sight.check_size(max_cells)
     }
 
+    /// Puts in the polygons of the scene that are windows. Each fills its part of the domain, so that what lies behind it is left out from
+    /// the start.
+    fn put_in_windows(&mut self, domain: &Domain) {
+        let Domain::Window(windows) = domain else { return };
+        for pane in windows.panes() {
+            let Pane::Polygon(polygon) = *pane else { continue };
+            for piece in self.hierarchy.scene.polygon(polygon).pieces() {
+                // Pieces have the same numbers as panels.
+                self.insert(piece.id().0, self.sight.contour.root);
+            }
+        }
+    }
+
     /// Puts in a panel; piece by piece if others lie in its plane, where the numbers of polygons tell which is seen.
     fn put_in(&mut self, panel: u32, top: Link) {
         if self.insert(panel, top) == Outcome::OneByOne {
@@ -154,13 +167,13 @@ impl Walk<'_> {
     }
 
     fn insert(&mut self, panel: u32, top: Link) -> Outcome {
-        let Self { hierarchy, sight, from_outside, creases, .. } = self;
+        let Self { hierarchy, sight, creases, .. } = self;
         let eye = sight.eye;
         let sides = hierarchy.panels.sides(panel);
         let Panel { piece: id, halves, bounds, .. } = hierarchy.panels.panel(panel);
         let piece = hierarchy.scene.piece(*id);
         let Some(shown) = hierarchy.skeleton.shown_side(piece, eye) else { return Outcome::Done };
-        if hierarchy.is_inside(*id, shown, from_outside) {
+        if hierarchy.is_inside(*id, shown, eye) {
             return Outcome::Done;
         }
         sight.look_at(piece, sides, shown);
