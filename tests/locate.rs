@@ -52,6 +52,7 @@ fn normal(scene: &Scene, eye: &Vector, splitter: Splitter) -> Vector {
             let [a, b] = ends.map(|v| minus(&exact(scene.vertex(v)), eye));
             cross(&a, &b)
         }
+        Splitter::Points(_) => unreachable!("there are no free windows"),
         Splitter::Crease(planes) => {
             let [[n1, p1], [n2, p2]] = planes.map(|p| plane(scene, p));
             let [h1, h2] = [dot(&n1, &minus(eye, &p1)), dot(&n2, &minus(eye, &p2))];

@@ -30,9 +30,9 @@ fn agree(first: &ContourImage, second: &ContourImage, directions: &[DVec3]) -> R
 }
 
 /// With a free eye: a viewpoint on a surface is rounded onto it, and after a change of coordinates that need not be
-/// the same point.
+/// the same point. Nor need a frustum be that has its axes changed; and windows go by the numbers of faces.
 fn free(mut case: Case) -> Case {
-    if matches!(case.outlook, Outlook::Above(..)) {
+    if matches!(case.outlook, Outlook::Above(..) | Outlook::Frustum(_) | Outlook::Windows(_)) {
         case.outlook = Outlook::Sphere;
     }
     case
