@@ -67,7 +67,8 @@ impl SceneBvh {
     ) -> Result<ContourImage, ViewError> {
         let hierarchy = &*self.hierarchy;
         let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options, space)?;
-        let mut walk = Walk { hierarchy, sight, creases: FxHashMap::default(), parts: Vec::new() };
+        let mut walk =
+            Walk { hierarchy, sight, creases: FxHashMap::default(), parts: Vec::new(), windows: Vec::new() };
         walk.put_in_windows(domain);
         walk.run(options.max_cells)?;
         Ok(walk.sight.finish(self.clone().into(), viewpoint, domain, space))
@@ -80,6 +81,8 @@ struct Walk<'a> {
     creases: FxHashMap<[PlaneId; 2], CircleId>,
     /// Leaves in which a panel is seen, its pieces not told apart yet.
     parts: Vec<(u32, u32)>,
+    /// Pieces that were put in as windows, ascending.
+    windows: Vec<PieceId>,
 }
 
 /// What is yet to be looked at: what is nearest first, then in an order that is always the same.
@@ -151,8 +154,10 @@ impl Walk<'_> {
             for piece in self.hierarchy.scene.polygon(polygon).pieces() {
                 // Pieces have the same numbers as panels.
                 self.insert(piece.id().0, self.sight.contour.root);
+                self.windows.push(piece.id());
             }
         }
+        self.windows.sort_unstable();
     }
 
     /// Puts in a panel; piece by piece if others lie in its plane, where the numbers of polygons tell which is seen.
@@ -167,7 +172,7 @@ impl Walk<'_> {
     }
 
     fn insert(&mut self, panel: u32, top: Link) -> Outcome {
-        let Self { hierarchy, sight, creases, .. } = self;
+        let Self { hierarchy, sight, creases, windows, .. } = self;
         let eye = sight.eye;
         let sides = hierarchy.panels.sides(panel);
         let Panel { piece: id, halves, bounds, .. } = hierarchy.panels.panel(panel);
@@ -186,8 +191,18 @@ impl Walk<'_> {
         let plane = SeenPlane::new(skeleton.approx_normal(plane), skeleton.anchor(plane), eye);
         let filler = Filler { piece: *id, near, far, plane: Some(plane) };
         let is_one = halves.is_none();
-        let mut rivals =
-            Rivals { hierarchy, eye, piece, sides, is_one, shown, last: None, creases, outcome: Outcome::Done };
+        let mut rivals = Rivals {
+            hierarchy,
+            eye,
+            piece,
+            sides,
+            panel: (!is_one).then_some(panel),
+            windows,
+            shown,
+            last: None,
+            creases,
+            outcome: Outcome::Done,
+        };
         let Sight { contour, buffers: Buffers { work, polygon, .. }, .. } = sight;
         let judge = |directions: &mut Directions, knife: &mut Knife, old: PieceId, part: &[PolygonArc]| {
             rivals.judge(directions, knife, old, part)
@@ -275,7 +290,9 @@ struct Rivals<'a> {
     piece: PieceRef<'a>,
     /// The boundary of all that is put in.
     sides: &'a [FragmentSide],
-    is_one: bool,
+    /// If it is a panel of several pieces.
+    panel: Option<u32>,
+    windows: &'a [PieceId],
     shown: Side,
     last: Option<(PieceId, Order)>,
     creases: &'a mut FxHashMap<[PlaneId; 2], CircleId>,
@@ -329,13 +346,22 @@ impl Rivals<'_> {
                 (false, false) => {}
             }
         }
-        if !self.is_one {
-            return Order::InOnePlane;
+        if let Some(panel) = self.panel {
+            return if self.is_own_window(panel, old.id()) { Order::Behind } else { Order::InOnePlane };
         }
         // In one plane: fronts hide backs, then the lower number hides the higher.
         let shown = if self.height(old) == Sign::Positive { old.facing() } else { old.facing().opposite() };
         let rank = |shown: Side, piece: PieceRef<'_>| (shown == Side::Back, piece.polygon(), piece.id());
         if rank(self.shown, new) < rank(shown, old) { Order::InFront } else { Order::Behind }
+    }
+
+    /// True if a piece is one of the panel's own, that was put in before as a window: nothing else of the panel is where it is.
+    fn is_own_window(&self, panel: u32, piece: PieceId) -> bool {
+        self.windows.binary_search(&piece).is_ok() && {
+            let mut own = Vec::new();
+            self.hierarchy.panels.pieces(panel, &mut own);
+            own.contains(&piece)
+        }
     }
 
     /// On which side of the plane of a piece the eye is.
