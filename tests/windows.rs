@@ -4,6 +4,7 @@ mod common;
 
 use common::{Faces, Random, cluttered_room};
 use glam::{DQuat, DVec3};
+use num_rational::BigRational;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
 use nusselt::contour::{
@@ -14,7 +15,6 @@ use nusselt::integral::{form_factor, solid_angle};
 use nusselt::scene::{PolygonId, Scene, Side};
 use nusselt::testing::{check_image, check_regions, check_same_regions};
 use nusselt::verify::Arithmetic;
-use num_rational::BigRational;
 use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
@@ -236,8 +236,7 @@ fn a_lamp_casts_the_shadow_that_is_known() {
         let domain = Domain::Window(Windows::polygon(PolygonId(0)).within_hemisphere(DVec3::Z));
         let [all, half] = [lamp.as_slice(), &half].map(|corners| {
             // Counter-clockwise seen from outside of the sphere.
-            form_factor(&corners.iter().rev().copied().collect::<Vec<_>>(), DVec3::Z)
-                + form_factor(corners, DVec3::Z)
+            form_factor(&corners.iter().rev().copied().collect::<Vec<_>>(), DVec3::Z) + form_factor(corners, DVec3::Z)
         });
         for (scene, expected) in [(&open, all), (&shaded, half)] {
             for image in both_ways(scene, &Viewpoint::free(DVec3::ZERO), &domain) {
@@ -378,9 +377,8 @@ fn cameras_see_what_they_are_said_to_see() {
             image.evidence().check(&scene, Arithmetic::Rational).expect("rational numbers agree");
             let frame = frustum.frame();
             let height = (degrees / 2.0f64).to_radians().tan();
-            let at = |x: f64, y: f64| {
-                frame.towards() + frame.right() * (x * aspect * height) + frame.up() * (y * height)
-            };
+            let at =
+                |x: f64, y: f64| frame.towards() + frame.right() * (x * aspect * height) + frame.up() * (y * height);
             // The middle and just inside of the corners, but not just outside.
             assert!(frame.up().dot(up) > 0.0 && frame.towards().dot(towards.normalize()) > 1.0 - 1e-15);
             assert_ne!(image.locate(at(0.0, 0.0)), Location::Outside);

@@ -226,11 +226,7 @@ struct Known {
 }
 
 impl Known {
-    fn new(
-        bsp: &SceneBsp,
-        (viewpoint, domain): &(Viewpoint, Domain),
-        number: usize,
-    ) -> Result<Self, CompareError> {
+    fn new(bsp: &SceneBsp, (viewpoint, domain): &(Viewpoint, Domain), number: usize) -> Result<Self, CompareError> {
         // The baselines take all of a hemisphere.
         if !matches!(domain, Domain::Sphere | Domain::Hemisphere(_) | Domain::Above) {
             return Err(CompareError::NoNormal { view: number });
@@ -238,7 +234,9 @@ impl Known {
         let failed = |source| CompareError::Contour { view: number, source };
         let image = bsp.view(viewpoint, domain).map_err(failed)?;
         match (image.normal(), image.form_factors()) {
-            (Some(normal), Some(exact)) => Ok(Self { number, viewpoint: *viewpoint, domain: domain.clone(), normal, exact }),
+            (Some(normal), Some(exact)) => {
+                Ok(Self { number, viewpoint: *viewpoint, domain: domain.clone(), normal, exact })
+            }
             _ => Err(CompareError::NoNormal { view: number }),
         }
     }

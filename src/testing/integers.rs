@@ -1,7 +1,7 @@
 //! Exact vectors for the checks: plain integers of any length, with nothing of the engine's kernel.
 
-use crate::contour::{ContourImage, Domain, Pane};
 use crate::contour::Splitter;
+use crate::contour::{ContourImage, Domain, Pane};
 use crate::exact::{Plane, Point};
 use crate::scene::{Scene, SupportingPlane};
 use glam::DVec3;

@@ -120,7 +120,8 @@ impl Evidence {
                     EvidencePane::Ring(ring) => ring.len() >= 3 && ring.iter().all(|p| p.is_finite()),
                 };
                 if let Some(k) = panes.iter().position(|pane| !is_pane(pane)) {
-                    let what = "it has fewer than three points, or some that are not finite, or its polygon does not exist";
+                    let what =
+                        "it has fewer than three points, or some that are not finite, or its polygon does not exist";
                     return malformed(format!("window {k}"), what);
                 }
             }

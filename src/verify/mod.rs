@@ -28,7 +28,5 @@ mod tests;
 
 pub use certificate::{Arithmetic, Certificate, Extent};
 pub use defect::{Defect, Rule};
-pub use evidence::{
-    Evidence, EvidenceCell, EvidenceDomain, EvidenceHorizon, EvidencePane, EvidenceSliver, HalfSphere,
-};
+pub use evidence::{Evidence, EvidenceCell, EvidenceDomain, EvidenceHorizon, EvidencePane, EvidenceSliver, HalfSphere};
 pub use ray::{RayAnswer, RayOracle, RayStats};

@@ -57,7 +57,8 @@ impl<S: Signs> Checker<'_, S> {
     /// a simple polygon on half a sphere that does is convex, which is what is to be shown.
     fn check_convex(&mut self, cell: u32) -> Result<(), Defect> {
         let sides = self.cell(cell).to_vec();
-        let not_convex = |[corner, side]: [usize; 2]| Defect::NotConvex { cell, corner: corner as u32, side: side as u32 };
+        let not_convex =
+            |[corner, side]: [usize; 2]| Defect::NotConvex { cell, corner: corner as u32, side: side as u32 };
         self.check_cone_is_convex(&sides).map_err(not_convex)
     }
 

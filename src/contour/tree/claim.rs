@@ -13,13 +13,7 @@ const CLAIMED: PieceId = PieceId(u32::MAX);
 
 impl ContourTree {
     /// Claims what is free of the inside of a convex spherical polygon. All of it is within the projection of `seen`.
-    pub(crate) fn claim(
-        &mut self,
-        skeleton: &Skeleton,
-        polygon: &[PolygonArc],
-        seen: &SeenBox,
-        work: &mut Workspace,
-    ) {
+    pub(crate) fn claim(&mut self, skeleton: &Skeleton, polygon: &[PolygonArc], seen: &SeenBox, work: &mut Workspace) {
         let filler = Filler { piece: CLAIMED, near: 0.0, far: 0.0, plane: None };
         self.insert(skeleton, self.root, polygon, seen, &filler, |_, _, _, _| Verdict::Behind, work);
     }

@@ -67,8 +67,7 @@ impl SceneBvh {
     ) -> Result<ContourImage, ViewError> {
         let hierarchy = &*self.hierarchy;
         let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options, space)?;
-        let mut walk =
-            Walk { hierarchy, sight, creases: FxHashMap::default(), parts: Vec::new(), windows: Vec::new() };
+        let mut walk = Walk { hierarchy, sight, creases: FxHashMap::default(), parts: Vec::new(), windows: Vec::new() };
         walk.put_in_windows(domain);
         walk.run(options.max_cells)?;
         Ok(walk.sight.finish(self.clone().into(), viewpoint, domain, space))

@@ -126,9 +126,16 @@ impl From<SplitterRow> for Splitter {
 pub(super) enum DomainRow {
     // With braces, as else unknown fields would be taken.
     Sphere {},
-    Hemisphere { normal: [f64; 3] },
-    Above { piece: u32, side: SideRow },
-    Frustum { normals: [[f64; 3]; 4] },
+    Hemisphere {
+        normal: [f64; 3],
+    },
+    Above {
+        piece: u32,
+        side: SideRow,
+    },
+    Frustum {
+        normals: [[f64; 3]; 4],
+    },
     Window {
         panes: Vec<PaneRow>,
         #[serde(deserialize_with = "present")]

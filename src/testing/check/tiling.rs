@@ -168,8 +168,7 @@ impl Outline {
 /// The normals to the inside of a convex ring's cone; `None` if it is seen edge-on.
 fn cone_of(ring: &[DVec3], eye: &Vector, unit: Unit) -> Option<Vec<Vector>> {
     let from_eye: Vec<Vector> = ring.iter().map(|&p| minus(&unit.vector(p), eye)).collect();
-    let normals: Vec<Vector> =
-        (0..ring.len()).map(|k| cross(&from_eye[k], &from_eye[(k + 1) % ring.len()])).collect();
+    let normals: Vec<Vector> = (0..ring.len()).map(|k| cross(&from_eye[k], &from_eye[(k + 1) % ring.len()])).collect();
     // All corners are on one side of every side of a convex ring.
     let heights = normals.iter().flat_map(|normal| from_eye.iter().map(|p| sign(&dot(normal, p))));
     match heights.into_iter().find(|&height| height != 0)? {

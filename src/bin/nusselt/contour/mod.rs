@@ -65,13 +65,13 @@ pub(crate) struct Contour {
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true, requires = "fov")]
     look_at: Option<DVec3>,
     /// The camera's vertical field of view in degrees, above 0 and below 180
-    #[arg(long, value_name = "DEG", value_parser = parse_fov, allow_hyphen_values = true, requires = "look_at")]
+    #[arg(long, value_name = "DEG", value_parser = parse_fov, allow_hyphen_values = true)]
     fov: Option<f64>,
-    /// The camera's width over height, as a number or a fraction
-    #[arg(long, value_name = "W/H", value_parser = parse_aspect, default_value = "1", requires = "look_at")]
-    aspect: f64,
+    /// The camera's width over height, as a number or a fraction [default: 1]
+    #[arg(long, value_name = "W/H", value_parser = parse_aspect, allow_hyphen_values = true)]
+    aspect: Option<f64>,
     /// What is up in the camera's picture [default: 0,0,1, or 0,1,0 when looking along it]
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true, requires = "look_at")]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true)]
     up: Option<DVec3>,
     /// See only what is in the directions of polygon K: a lamp, or a window. May be repeated; with --normal or --on only what is above
     /// the horizon

@@ -10,8 +10,16 @@ use nusselt::scene::{PolygonId, Scene, Side};
 impl Contour {
     /// What the camera sees, if there is one.
     pub(super) fn camera(&self) -> Result<Option<Frustum>, Failure> {
-        let (Some(look_at), Some(fov)) = (self.look_at, self.fov) else { return Ok(None) };
         let usage = |message: String| Err(Failure::Usage(message));
+        let (Some(look_at), Some(fov)) = (self.look_at, self.fov) else {
+            let given =
+                [("--fov", self.fov.is_some()), ("--aspect", self.aspect.is_some()), ("--up", self.up.is_some())];
+            return match given.into_iter().find(|(_, is_given)| *is_given) {
+                Some((name, _)) => usage(format!("{name} is for a camera; give --look-at too")),
+                None => Ok(None),
+            };
+        };
+        let aspect = self.aspect.unwrap_or(1.0);
         // Halves, so that no difference overflows.
         let towards = look_at * 0.5 - self.eye * 0.5;
         let towards = if towards == DVec3::ZERO { look_at - self.eye } else { towards };
@@ -19,9 +27,9 @@ impl Contour {
             return usage("--look-at is --eye; look at another point".to_owned());
         }
         let made = match self.up {
-            Some(up) => Frustum::new(towards, up, fov, self.aspect),
-            None => match Frustum::new(towards, DVec3::Z, fov, self.aspect) {
-                Err(FrustumError::UpAlong) => Frustum::new(towards, DVec3::Y, fov, self.aspect),
+            Some(up) => Frustum::new(towards, up, fov, aspect),
+            None => match Frustum::new(towards, DVec3::Z, fov, aspect) {
+                Err(FrustumError::UpAlong) => Frustum::new(towards, DVec3::Y, fov, aspect),
                 made => made,
             },
         };

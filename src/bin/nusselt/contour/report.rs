@@ -63,11 +63,9 @@ pub(super) fn in_words(image: &ContourImage, summary: &ContourSummary<'_>, timin
         Domain::Above => lines.add("domain", "hemisphere above the polygon"),
         Domain::Hemisphere(normal) => lines.add("domain", format!("hemisphere about {}", vector(*normal))),
         Domain::Frustum(frustum) => {
-            let reach = frustum.aspect() * (frustum.degrees() / 2.0).to_radians().tan();
-            let across = number(2.0 * reach.atan().to_degrees());
             let towards = vector(frustum.frame().towards());
-            let what = format!("camera towards {towards}, {across} by {} degrees", number(frustum.degrees()));
-            lines.add("domain", what);
+            let [degrees, aspect] = [frustum.degrees(), frustum.aspect()].map(number);
+            lines.add("domain", format!("camera towards {towards}, {degrees} degrees high, aspect {aspect}"));
         }
         Domain::Window(windows) => lines.add("domain", windows_in_words(windows)),
         _ => lines.add("domain", "other"),
@@ -100,11 +98,20 @@ pub(super) fn in_words(image: &ContourImage, summary: &ContourSummary<'_>, timin
 }
 
 fn windows_in_words(windows: &Windows) -> String {
-    let panes: Vec<String> = windows.panes().iter().take(LISTED).map(|pane| match pane {
-        Pane::Polygon(polygon) => polygon.to_string(),
-        Pane::Ring(_) => "other".to_owned(),
-    }).collect();
-    let more = if windows.panes().len() > LISTED { format!(" and {} more", windows.panes().len() - LISTED) } else { String::new() };
+    let panes: Vec<String> = windows
+        .panes()
+        .iter()
+        .take(LISTED)
+        .map(|pane| match pane {
+            Pane::Polygon(polygon) => polygon.to_string(),
+            Pane::Ring(_) => "other".to_owned(),
+        })
+        .collect();
+    let more = if windows.panes().len() > LISTED {
+        format!(" and {} more", windows.panes().len() - LISTED)
+    } else {
+        String::new()
+    };
     let within = match windows.horizon() {
         None => String::new(),
         Some(Horizon::Surface) => ", above the polygon".to_owned(),
