@@ -5,7 +5,7 @@ use glam::DVec3;
 use nusselt::bvh::SceneBvh;
 use nusselt::contour::{Domain, ViewOptions, ViewSpace, Viewpoint, Windows};
 use nusselt::samples::{Kind, generate};
-use nusselt::scene::{ObjectId, PolygonId, Scene};
+use nusselt::scene::{ObjectId, PolygonId, PolygonRef, Scene};
 use std::error::Error;
 use std::time::Instant;
 
@@ -35,7 +35,7 @@ fn rows(kind: Kind, polygons: usize) -> Result<(), Box<dyn Error>> {
     let bvh = SceneBvh::build(&scene);
     let lamp = scene.objects().iter().position(|name| name.starts_with("lamp")).ok_or("the scene has a lamp")?;
     let tiles: Vec<PolygonId> =
-        scene.polygons().filter(|polygon| polygon.object() == ObjectId(lamp as u32)).map(|p| p.id()).collect();
+        scene.polygons().filter(|polygon| polygon.object() == ObjectId(lamp as u32)).map(PolygonRef::id).collect();
     let outline = outline(&scene, &tiles);
     let points = mesh.floor_points(VIEWS, 3);
     row(&format!("| {kind} | {polygons} | outline"), &bvh, &points, &tiles, &Windows::free(&outline)?)?;

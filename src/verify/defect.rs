@@ -62,7 +62,7 @@ pub enum Defect {
     )]
     Unbalanced {
         /// The great circle; left is its positive side.
-        circle: Splitter,
+        circle: Box<Splitter>,
         /// From where to where, counter-clockwise about its normal; rounded.
         stretch: [DVec3; 2],
         /// Cells on the left less cells on the right.
@@ -332,7 +332,7 @@ mod tests {
     }
 
     fn unbalanced(circle: Splitter, cells: Vec<u32>) -> Defect {
-        Defect::Unbalanced { circle, stretch: [DVec3::X, DVec3::Y], count: -1, expected: 1, cells }
+        Defect::Unbalanced { circle: Box::new(circle), stretch: [DVec3::X, DVec3::Y], count: -1, expected: 1, cells }
     }
 
     #[test]

@@ -247,7 +247,7 @@ impl<S: Signs> Checker<'_, S> {
         let known = self.evidence.splitters.get(circle as usize).copied();
         let known = known.or_else(of_horizon).or_else(of_cones);
         let circle = known.unwrap_or_else(|| Splitter::Given(self.signs.rounded(circle)));
-        Defect::Unbalanced { circle, stretch, count, expected, cells }
+        Defect::Unbalanced { circle: Box::new(circle), stretch, count, expected, cells }
     }
 
     /// C: a direction off all great circles lies in one cell, or in none if it is outside of the domain.

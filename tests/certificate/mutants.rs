@@ -473,7 +473,7 @@ fn a_horizon_without_cells_is_named_by_what_it_is_defined_from() {
     evidence.cells.clear();
     evidence.splitters.clear();
     let named = |evidence: &Evidence| match refused(&scene, evidence, "no cells") {
-        Defect::Unbalanced { circle, count: 0, expected: 1, .. } => circle,
+        Defect::Unbalanced { circle, count: 0, expected: 1, .. } => *circle,
         defect => panic!("{defect}"),
     };
     let plane = scene.piece(PieceId(0)).plane();

@@ -94,11 +94,11 @@ fn another_domain_than_what_the_cells_tile_is_refused() {
         with_panes(&honest, |panes| panes.reverse()),
         with_panes(&honest, |panes| panes.push(panes[1].clone())),
         with_panes(&honest, |panes| {
-            panes.iter_mut().for_each(|pane| {
+            for pane in panes {
                 if let EvidencePane::Ring(ring) = pane {
-                    ring.reverse()
+                    ring.reverse();
                 }
-            });
+            }
         }),
         with_panes(&honest, |panes| panes.push(EvidencePane::Ring(square([220.0, 220.0], 50.0)))),
         with_horizon(&honest, Some(EvidenceHorizon::Normal(DVec3::new(0.0, -0.5, 0.1)))),

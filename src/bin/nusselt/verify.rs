@@ -6,6 +6,7 @@ use crate::input::load;
 use crate::output::{print, print_json};
 use crate::proof::{Proof, failed_certificate, name};
 use crate::summary::{Lines, Timing, number, vector};
+use glam::DVec3;
 use nusselt::io::{CertificateRow, read_certificate};
 use nusselt::scene::{PieceId, Scene, Side};
 use nusselt::verify::{Arithmetic, Evidence, EvidenceDomain, EvidenceHorizon, EvidencePane};
@@ -77,7 +78,7 @@ fn domain_as_json(scene: &Scene, domain: &EvidenceDomain) -> Value {
         EvidenceDomain::Window { panes, .. } => {
             let windows = panes.iter().map(|pane| match pane {
                 EvidencePane::Polygon(polygon) => json!(polygon.0),
-                EvidencePane::Ring(ring) => json!(ring.iter().map(|p| p.to_array()).collect::<Vec<_>>()),
+                EvidencePane::Ring(ring) => json!(ring.iter().map(DVec3::to_array).collect::<Vec<_>>()),
             });
             json!({ "kind": "window", "windows": windows.collect::<Vec<_>>(), "within": horizon })
         }

@@ -156,7 +156,7 @@ impl Outline {
 
     /// 1 for a direction inside, -1 for one outside, 0 for one that may be on the boundary.
     fn side(&self, direction: &Vector) -> i32 {
-        let of = |normal: &Vector| i32::from(sign(&dot(normal, direction)));
+        let of = |normal: &Vector| sign(&dot(normal, direction));
         let cones = self.cones.as_ref().map(|cones| {
             let sides = cones.iter().map(|cone| cone.iter().map(of).min().unwrap_or(1));
             sides.max().unwrap_or(-1)
