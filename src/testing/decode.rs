@@ -10,7 +10,7 @@ const MOST_FACES: usize = 12;
 
 impl Case {
     /// The first byte of every input that [`Case::decode`] reads.
-    pub const VERSION: u8 = 1;
+    pub const VERSION: u8 = 2;
 
     /// Reads a case from bytes; `None` if they are of another version. Bytes past the end count as zeros.
     ///
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_known_input_keeps_its_meaning() {
-        let case = Case::decode(&[1, 0, 8, 8, 8, 0, 0, 0, 8, 8, 9, 0, 8, 8, 10, 10, 8, 10, 8, 10, 10, 7, 0]).unwrap();
+        let case = Case::decode(&[2, 0, 8, 8, 8, 0, 0, 0, 8, 8, 9, 0, 8, 8, 10, 10, 8, 10, 8, 10, 10, 7, 0]).unwrap();
         let expected = Case {
             mode: Mode::Grid,
             faces: Faces::from(vec![
@@ -247,5 +247,14 @@ mod tests {
         };
         assert_eq!(case, expected);
         assert_eq!(format!("{case:?}"), format!("{case:#?}"));
+        // A camera, and windows.
+        let outlook = |head: u8, eye: u8| {
+            let bytes = [2, head, eye, 8, 8, 0, 0, 0, 8, 7, 9, 0, 8, 8, 10, 10, 8, 10, 8, 10, 10, 7, 0];
+            Case::decode(&bytes).map(|case| case.outlook)
+        };
+        assert_eq!(outlook(0x20, 8), Some(Outlook::Frustum(1)));
+        let windows = |within_hemisphere| CaseWindows { faces: [0, 1], with_moved: true, within_hemisphere };
+        assert_eq!(outlook(0x30, 8), Some(Outlook::Windows(windows(false))));
+        assert_eq!(outlook(0x30, 7), Some(Outlook::Windows(windows(true))));
     }
 }
