@@ -358,6 +358,13 @@ fn windows_of_any_shape_are_taken_and_what_is_none_is_refused() {
     let error = |windows: Windows| boxes.view(&viewpoint, &Domain::Window(windows)).expect_err("no such view");
     let unknown = ViewError::UnknownWindow { polygon: PolygonId(1), count: 1 };
     assert_eq!(error(Windows::polygons([PolygonId(0), PolygonId(1)])), unknown);
+    let many =
+        (0..40).map(|k| Windows::free(&rectangle([0.0, 0.1 * f64::from(k)], [0.1 * f64::from(k + 1), 5.0], 3.0)));
+    let many = many.fold(Windows::polygons([]), |all, next| all.and(&next.expect("a rectangle")));
+    let options = ViewOptions { max_cells: 50, ..ViewOptions::default() };
+    let limited = boxes.view_with(&viewpoint, &Domain::Window(many.clone()), &options);
+    assert_eq!(limited.expect_err("more cells than that"), ViewError::TooManyCells { limit: 50 });
+    both_ways(&scene, &viewpoint, &Domain::Window(many));
     assert_eq!(error(Windows::polygon(PolygonId(0)).above_surface()), ViewError::NotOnSurface);
     assert_eq!(error(Windows::polygon(PolygonId(0)).within_hemisphere(DVec3::ZERO)), ViewError::BadNormal);
 }

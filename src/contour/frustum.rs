@@ -58,7 +58,7 @@ impl Frustum {
     /// from the lower to the upper border, above 0 and below 180; `aspect` is width over height, in the image plane.
     ///
     /// # Errors
-    /// Where one of these is out of its range, or where rounding leaves no convex cone: with angles below about 1e-13 degrees, for one.
+    /// Where one of these is out of its range, or where rounding leaves no convex cone: with angles of 1e-15 degrees, for one.
     pub fn new(towards: DVec3, up: DVec3, degrees: f64, aspect: f64) -> Result<Self, FrustumError> {
         let has_direction = |v: DVec3| v.is_finite() && v != DVec3::ZERO;
         if !has_direction(towards) {

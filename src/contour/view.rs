@@ -28,7 +28,7 @@ use space::Buffers;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewOptions {
     /// Levels of the quadtree at the top of the contour tree: 0 for octants only, 1 for quarter faces
-    /// of a cube or quarters of an image plane, each further one quarters those. `None` chooses by the size of the scene. At most 8.
+    /// of a cube or quarters of an image plane, each further one quarters those. `None` chooses by the size of the scene, 0 for windows. At most 8.
     pub quadtree_depth: Option<u32>,
     /// Where the quadtree lies.
     pub quadtree: Quadtree,
@@ -70,7 +70,7 @@ pub enum ViewError {
         /// The levels asked for.
         depth: u32,
     },
-    /// A quadtree on an image plane, without a hemisphere that has one, or with an angle across it that is not between 0 and 180 degrees.
+    /// A quadtree on an image plane, for another domain than a hemisphere, or with an angle across it that is not between 0 and 180 degrees.
     #[error("a quadtree on an image plane takes a hemisphere, and an angle above 0 and below 180 degrees")]
     NoImagePlane,
     /// The view falls into too many cells.
@@ -142,7 +142,7 @@ impl<'a> Sight<'a> {
         let range = outlook::range(skeleton, domain);
         let contour = ContourTree::octants(skeleton, range, eye, former, &mut buffers.work.knife);
         let mut sight = Self { skeleton, eye, contour, buffers, stats: ViewStats::default() };
-        let normal = sight.cut_out(scene, viewpoint, domain)?;
+        let normal = sight.cut_out(scene, viewpoint, domain, options.max_cells)?;
         let Self { contour, buffers: Buffers { work, .. }, .. } = &mut sight;
         subdivide(contour, skeleton, options.quadtree, normal, depth, work);
         Ok(sight)

@@ -7,7 +7,7 @@ use super::signs::Signs;
 use crate::exact::{self, Plane, Sign};
 use crate::scene::{PolygonId, Side, Splitter};
 use glam::DVec3;
-use rustc_hash::FxHashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 
 /// So many corners are looked at, at most, to cut windows into parts that do not overlap: about a minute.
 const CORNERS: usize = 1 << 26;
@@ -43,8 +43,11 @@ impl<S: Signs> Checker<'_, S> {
                 cones.whole.push(cone.to_vec());
             }
             EvidenceDomain::Window { panes, .. } => {
+                // Each polygon once, however often it is named.
+                let mut known = FxHashSet::default();
                 for pane in panes {
                     match pane {
+                        EvidencePane::Polygon(polygon) if !known.insert(*polygon) => {}
                         EvidencePane::Polygon(polygon) => self.add_polygon(*polygon, &mut cones),
                         EvidencePane::Ring(ring) => self.add_ring(ring, &mut cones)?,
                     }

@@ -30,7 +30,7 @@ impl<S: Signs> Checker<'_, S> {
             let corners = corners_of(piece);
             let signs = &mut self.signs;
             let is_below = self.horizon.is_some_and(|horizon| signs.box_outside(&[horizon], corners));
-            let mut is_beside = |cones: &DomainCones| cones.whole.iter().all(|cone| signs.box_outside(cone, corners));
+            let mut is_beside = |cones: &DomainCones| cones.parts.iter().all(|part| signs.box_outside(part, corners));
             if !is_below && !self.cones.as_ref().is_some_and(&mut is_beside) {
                 seen.push((piece.id(), corners));
             }

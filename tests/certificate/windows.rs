@@ -183,7 +183,10 @@ fn very_many_windows_take_no_time() {
             EvidencePane::Ring(square([k * 0.37 % 500.0, k * 0.73 % 500.0], 60.0 + k * 0.01))
         }));
     });
+    // One that is named very often is one.
+    let often = with_panes(&honest, |panes| panes.extend((0..300_000).map(|_| EvidencePane::Polygon(PolygonId(3)))));
     let start = Instant::now();
+    often.check(&scene, Arithmetic::Kernel).expect("the same union");
     let defect = many.check(&scene, Arithmetic::Kernel).expect_err("its cells do not tile them");
     assert!(start.elapsed() < Duration::from_secs(300), "{:?}", start.elapsed());
     assert!(defect.to_string().len() < 1000);

@@ -29,6 +29,7 @@ impl Sight<'_> {
         scene: &Scene,
         viewpoint: &Viewpoint,
         domain: &Domain,
+        max_cells: usize,
     ) -> Result<Option<DVec3>, ViewError> {
         match domain {
             Domain::Sphere => Ok(None),
@@ -40,7 +41,7 @@ impl Sight<'_> {
                 Ok(None)
             }
             Domain::Window(windows) => {
-                self.claim_windows(scene, windows)?;
+                self.claim_windows(scene, windows, max_cells)?;
                 self.contour.keep_claimed();
                 if let Some(horizon) = windows.horizon() {
                     self.cut_at_horizon(scene, viewpoint, horizon)?;
@@ -87,8 +88,9 @@ impl Sight<'_> {
         contour.claim(skeleton, polygon, &SeenBox::new(*eye, *eye, *eye), work);
     }
 
-    fn claim_windows(&mut self, scene: &Scene, windows: &Windows) -> Result<(), ViewError> {
+    fn claim_windows(&mut self, scene: &Scene, windows: &Windows, max_cells: usize) -> Result<(), ViewError> {
         for pane in windows.panes() {
+            self.check_size(max_cells)?;
             match pane {
                 Pane::Polygon(polygon) => {
                     if polygon.index() >= scene.polygon_count() {
