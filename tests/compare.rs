@@ -113,7 +113,7 @@ fn errors_are_told_from_the_closed_forms_of_a_box() {
     let resolutions = [16, 64, 250];
     let mut methods = vec![Method::Contour, Method::ContourByBoxes];
     methods.extend(resolutions.map(|resolution| Method::Hemicube { resolution }));
-    let rows = compare(&bsp(&scene), &[view], &methods, ROUNDS, |_| ()).expect("good methods");
+    let rows = compare(&bsp(&scene), std::slice::from_ref(&view), &methods, ROUNDS, |_| ()).expect("good methods");
     let exact = [closed];
     assert_eq!((rows[0].above_1e4.visible(), rows[0].above_1e4.count()), (148, 148), "all but the floor");
     for (row, resolution) in rows[2..].iter().zip(resolutions) {
@@ -201,7 +201,7 @@ fn a_polygon_between_pixels_is_lost_by_z_buffers_alone() {
     faces.face(&square(0.125, 0.25));
     faces.face(&square(0.001, 0.002));
     let bsp = bsp(&faces.build());
-    let views = [(Viewpoint::free(DVec3::ZERO), UP); 3];
+    let views = [(); 3].map(|()| (Viewpoint::free(DVec3::ZERO), UP));
     let methods = [
         Method::Contour,
         Method::ContourByBoxes,
@@ -246,11 +246,11 @@ fn what_cannot_be_compared_is_named() {
     let bsp = bsp(&cornell_box().to_builder().build().expect("the Cornell box"));
     let good = (Viewpoint::free(DVec3::new(278.0, 273.0, 1.0)), UP);
     // Beyond the views that are taken together first.
-    let views = |last| [vec![good; 22], vec![last]].concat();
+    let views = |last| [vec![good.clone(); 22], vec![last]].concat();
     let try_with = |view, method| compare(&bsp, &views(view), &[method], ROUNDS, |_| ()).expect_err("not compared");
     let odd = CompareError::Method(BaselineError::BadResolution { resolution: 7 });
-    assert_eq!(try_with(good, Method::Analytic { resolution: 7 }), odd);
-    assert_eq!(try_with(good, Method::Rays { rays: 0 }), CompareError::Method(BaselineError::NoRays));
+    assert_eq!(try_with(good.clone(), Method::Analytic { resolution: 7 }), odd);
+    assert_eq!(try_with(good.clone(), Method::Rays { rays: 0 }), CompareError::Method(BaselineError::NoRays));
     assert_eq!(try_with((good.0, Domain::Sphere), Method::Contour), CompareError::NoNormal { view: 22 });
     let far = (Viewpoint::free(DVec3::splat(1e6)), UP);
     let error = CompareError::Baseline { view: 22, source: BaselineError::EyeTooFar };

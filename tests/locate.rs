@@ -52,6 +52,7 @@ fn normal(scene: &Scene, eye: &Vector, splitter: Splitter) -> Vector {
             let [a, b] = ends.map(|v| minus(&exact(scene.vertex(v)), eye));
             cross(&a, &b)
         }
+        Splitter::Points(_) => unreachable!("there are no free windows"),
         Splitter::Crease(planes) => {
             let [[n1, p1], [n2, p2]] = planes.map(|p| plane(scene, p));
             let [h1, h2] = [dot(&n1, &minus(eye, &p1)), dot(&n2, &minus(eye, &p2))];
@@ -225,23 +226,23 @@ fn grid(most: i32) -> Vec<DVec3> {
     directions
 }
 
-fn view(scene: &Scene, eye: DVec3, domain: Domain, depth: u32) -> ContourImage {
+fn view(scene: &Scene, eye: DVec3, domain: &Domain, depth: u32) -> ContourImage {
     let bsp = SceneBsp::build(scene, &BspOptions::default()).expect("epsilon is 0");
     let options = ViewOptions { quadtree_depth: Some(depth), ..Default::default() };
-    bsp.view_with(&Viewpoint::free(eye), &domain, &options).expect("a finite eye")
+    bsp.view_with(&Viewpoint::free(eye), domain, &options).expect("a finite eye")
 }
 
 #[test]
 fn octants_have_their_arcs_and_vertices() {
     let scene = Scene::builder().build().unwrap();
-    let image = view(&scene, DVec3::ZERO, Domain::Sphere, 0);
+    let image = view(&scene, DVec3::ZERO, &Domain::Sphere, 0);
     let mut counts = Counts::default();
     check(&image, grid(1), &mut counts);
     assert_eq!(counts, Counts { cells: 8, arcs: 12, vertices: 6, ..Default::default() });
     let Location::Vertex { corners, beside } = image.locate(DVec3::X) else { panic!("no vertex") };
     assert_eq!((corners.len(), beside.len()), (4, 0));
 
-    let image = view(&scene, DVec3::ZERO, Domain::Hemisphere(DVec3::Z), 0);
+    let image = view(&scene, DVec3::ZERO, &Domain::Hemisphere(DVec3::Z), 0);
     let mut counts = Counts::default();
     check(&image, grid(1), &mut counts);
     // On the horizon lie four arcs between a quarter and what is outside, and four vertices.
@@ -252,7 +253,7 @@ fn octants_have_their_arcs_and_vertices() {
 
 #[test]
 fn directions_that_name_nothing_are_outside() {
-    let image = view(&Scene::builder().build().unwrap(), DVec3::ONE, Domain::Sphere, 1);
+    let image = view(&Scene::builder().build().unwrap(), DVec3::ONE, &Domain::Sphere, 1);
     for direction in [DVec3::ZERO, DVec3::NAN, DVec3::new(0.0, f64::INFINITY, 1.0), DVec3::new(-0.0, 0.0, -0.0)] {
         assert_eq!(image.locate(direction), Location::Outside);
     }
@@ -262,7 +263,7 @@ fn directions_that_name_nothing_are_outside() {
 fn no_length_and_no_ratio_is_too_large() {
     let mut faces = Faces::default();
     faces.face(&[[1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [1.0, 0.0, 2.0]].map(DVec3::from));
-    let image = view(&faces.build(), DVec3::ZERO, Domain::Sphere, 2);
+    let image = view(&faces.build(), DVec3::ZERO, &Domain::Sphere, 2);
     let [least, most, unit] = [5e-324, f64::MAX, 1.0];
     let sizes = [0.0, least, unit, most, -least, -unit, -most];
     let directions = sizes.iter().flat_map(|&x| sizes.iter().map(move |&y| (x, y)));
@@ -287,7 +288,7 @@ fn collinear_vertices_are_no_corners() {
     let square = [[4.0, -2.0, -2.0], [4.0, -1.0, -2.0], [4.0, 0.0, -2.0], [4.0, 2.0, -2.0], [4.0, 2.0, 2.0]];
     faces.face(&square.into_iter().chain([[4.0, -2.0, 2.0]]).map(DVec3::from).collect::<Vec<_>>());
     for depth in 0..4 {
-        let image = view(&faces.build(), DVec3::ZERO, Domain::Sphere, depth);
+        let image = view(&faces.build(), DVec3::ZERO, &Domain::Sphere, depth);
         let at = image.locate(DVec3::new(4.0, -1.0, -2.0));
         // Deeper quadtrees cut there.
         assert!(depth > 1 || matches!(at, Location::Arc { .. }), "depth {depth}: {at:?}");
@@ -304,7 +305,7 @@ fn in_t_junctions_the_cell_beside_is_named() {
     faces.face(&[[2.0, -1.0, -1.0], [2.0, 1.0, -1.0], [2.0, 1.0, 1.0], [2.0, -1.0, 1.0]].map(DVec3::from));
     faces.face(&[[2.0, 0.0, 1.0], [2.0, 1.0, 3.0], [2.0, -1.0, 3.0]].map(DVec3::from));
     // Off the diagonals of the quadtree.
-    let image = view(&faces.build(), DVec3::new(0.0, 0.25, 0.5), Domain::Sphere, 0);
+    let image = view(&faces.build(), DVec3::new(0.0, 0.25, 0.5), &Domain::Sphere, 0);
     let mut counts = Counts::default();
     let tip = DVec3::new(2.0, -0.25, 0.5);
     check(&image, [tip], &mut counts);
@@ -346,7 +347,7 @@ proptest! {
         more in prop::collection::vec(small(5), 4),
     ) {
         let domain = if normal == DVec3::ZERO { Domain::Sphere } else { Domain::Hemisphere(normal) };
-        let image = view(&scene, eye, domain, depth);
+        let image = view(&scene, eye, &domain, depth);
         let mut counts = Counts::default();
         check(&image, grid(1).into_iter().chain(more).filter(|&d| d != DVec3::ZERO), &mut counts);
         // Towards vertices and middles of edges, and away from them; on this grid the subtraction is exact.

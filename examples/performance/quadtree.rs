@@ -44,7 +44,7 @@ pub(crate) fn part(images: &Path) -> Result<String, Box<dyn Error>> {
         let mesh = generate(kind, polygons, 1)?;
         let bvh = SceneBvh::build(&mesh.to_builder().build()?);
         for (domain, name) in [(UP, "hemisphere"), (Domain::Sphere, "sphere")] {
-            let means = depths(&bvh, &mesh, domain, Quadtree::Cube)?;
+            let means = depths(&bvh, &mesh, &domain, Quadtree::Cube)?;
             writeln!(text, "| {kind} | {polygons} | {name} | cube | {means}")?;
         }
         if kind != Kind::Room || polygons != 50_000 {
@@ -52,7 +52,7 @@ pub(crate) fn part(images: &Path) -> Result<String, Box<dyn Error>> {
         }
         for degrees in [90.0, 120.0, 150.0, 170.0, 179.0] {
             for (spacing, name) in [(Spacing::Even, "even"), (Spacing::TowardsCentre, "towards the centre")] {
-                let means = depths(&bvh, &mesh, UP, Quadtree::Plane { degrees, spacing })?;
+                let means = depths(&bvh, &mesh, &UP, Quadtree::Plane { degrees, spacing })?;
                 writeln!(text, "| {kind} | {polygons} | hemisphere | plane of {degrees}, {name} | {means}")?;
             }
         }
@@ -61,7 +61,7 @@ pub(crate) fn part(images: &Path) -> Result<String, Box<dyn Error>> {
 }
 
 /// Mean times by depth, as the rest of a row. All depths see from a point before the next one is taken.
-fn depths(bvh: &SceneBvh, mesh: &Mesh, domain: Domain, quadtree: Quadtree) -> Result<String, Box<dyn Error>> {
+fn depths(bvh: &SceneBvh, mesh: &Mesh, domain: &Domain, quadtree: Quadtree) -> Result<String, Box<dyn Error>> {
     let mut means = DEPTHS.map(|_| 0.0);
     let mut space = ViewSpace::new();
     for point in mesh.free_points(VIEWS, 3) {
@@ -69,7 +69,7 @@ fn depths(bvh: &SceneBvh, mesh: &Mesh, domain: Domain, quadtree: Quadtree) -> Re
         for (depth, mean) in DEPTHS.into_iter().zip(&mut means) {
             let options = ViewOptions { quadtree_depth: Some(depth), quadtree, ..ViewOptions::default() };
             let start = Instant::now();
-            let image = bvh.view_in(&mut space, &eye, &domain, &options)?;
+            let image = bvh.view_in(&mut space, &eye, domain, &options)?;
             if image.form_factors().is_none() {
                 image.solid_angles();
             }

@@ -23,7 +23,8 @@ pub(crate) fn part(_: &Path) -> Result<String, Box<dyn Error>> {
         let mesh = generate(kind, polygons, 1)?;
         let order = SceneOrder::new(&mesh.to_builder().build()?);
         let up = Domain::Hemisphere(DVec3::Z);
-        let views: Vec<_> = mesh.free_points(VIEWS, 3).into_iter().map(|p| (Viewpoint::free(p.into()), up)).collect();
+        let views: Vec<_> =
+            mesh.free_points(VIEWS, 3).into_iter().map(|p| (Viewpoint::free(p.into()), up.clone())).collect();
         let mut best = counts.map(|_| f64::INFINITY);
         let mut sums = None;
         for _ in 0..ROUNDS {

@@ -130,13 +130,8 @@ impl Hierarchy {
         Self { scene, skeleton, nodes, panels, order, solids, built_cost }
     }
 
-    /// For each solid, whether the eye is certainly outside of it.
-    pub(crate) fn solids_seen_from_outside(&self, eye: DVec3) -> Vec<bool> {
-        self.solids.seen_from_outside(eye)
-    }
-
-    /// True if that side of the piece is the inside of a solid that is seen from outside.
-    pub(crate) fn is_inside(&self, piece: PieceId, shown: Side, from_outside: &[bool]) -> bool {
-        self.solids.is_inside(piece, shown, from_outside)
+    /// True if that side of the piece is the inside of a solid that the eye is certainly outside of.
+    pub(crate) fn is_inside(&self, piece: PieceId, shown: Side, eye: DVec3) -> bool {
+        self.solids.is_inside(piece, shown, eye)
     }
 }

@@ -91,13 +91,6 @@ impl Solids {
         self.components.iter().filter(|component| component.inside.is_some()).map(|component| component.pieces).sum()
     }
 
-    /// For each component, whether it is a solid that the eye is certainly outside of.
-    pub(super) fn seen_from_outside(&self, eye: DVec3) -> Vec<bool> {
-        let outside = |b: &Bounds| (eye.cmplt(b.low) | eye.cmpgt(b.high)).any();
-        let is_seen = |component: &Component| component.inside.is_some() && outside(&component.bounds);
-        self.components.iter().map(is_seen).collect()
-    }
-
     /// The solid that a piece is part of.
     pub(super) fn solid_of(&self, piece: PieceId) -> Option<Solid> {
         let component = self.component_of[piece.index()];
@@ -112,11 +105,11 @@ impl Solids {
         a == b || !(is_solid(a) || is_solid(b))
     }
 
-    pub(super) fn is_inside(&self, piece: PieceId, shown: Side, from_outside: &[bool]) -> bool {
-        match self.component_of[piece.index()] {
-            NONE => false,
-            component => from_outside[component as usize] && self.components[component as usize].inside == Some(shown),
-        }
+    /// True if that side of a piece faces the inside of a solid that the eye is certainly outside of.
+    pub(super) fn is_inside(&self, piece: PieceId, shown: Side, eye: DVec3) -> bool {
+        let Some(component) = self.components.get(self.component_of[piece.index()] as usize) else { return false };
+        let Bounds { low, high } = component.bounds;
+        component.inside == Some(shown) && (eye.cmplt(low) | eye.cmpgt(high)).any()
     }
 }
 
@@ -359,10 +352,9 @@ mod tests {
             assert_eq!(bvh.solid_pieces(), 6);
             let hierarchy = &bvh.hierarchy;
             for eye in [DVec3::new(-3.0, 2.5, 4.0), DVec3::new(9.0, -8.0, 5.0), DVec3::new(2.0, 2.5, 5.0)] {
-                let from_outside = hierarchy.solids_seen_from_outside(eye);
                 let left_out = bvh.scene().pieces().filter(|piece| {
                     let shown = hierarchy.skeleton.shown_side(*piece, eye).expect("the eye is in no plane");
-                    hierarchy.is_inside(piece.id(), shown, &from_outside)
+                    hierarchy.is_inside(piece.id(), shown, eye)
                 });
                 // From outside those that do not show their outside; from inside none.
                 let is_outside = |k: usize, value: f64| eye[k] < value;

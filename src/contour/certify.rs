@@ -2,8 +2,10 @@
 
 use super::domain::Domain;
 use super::image::ContourImage;
+use super::windows::{Horizon, Pane};
 use crate::verify::{
-    Arithmetic, Certificate, Defect, Evidence, EvidenceCell, EvidenceDomain, EvidenceSliver, HalfSphere,
+    Arithmetic, Certificate, Defect, Evidence, EvidenceCell, EvidenceDomain, EvidenceHorizon, EvidencePane,
+    EvidenceSliver, HalfSphere,
 };
 
 impl ContourImage {
@@ -29,19 +31,34 @@ impl ContourImage {
             plane: sliver.plane,
             beyond: sliver.beyond,
         });
-        let domain = match (*self.domain(), self.viewpoint().surface_piece()) {
-            (Domain::Sphere, _) => EvidenceDomain::Sphere,
-            (Domain::Hemisphere(normal), _) => EvidenceDomain::Hemisphere(normal),
-            (Domain::Above, Some((piece, side))) => EvidenceDomain::Above(piece, side),
-            (Domain::Above, None) => unreachable!("such a view is refused"),
-        };
         Evidence {
             eye: self.viewpoint().eye(),
-            domain,
+            domain: self.evidence_domain(),
             epsilon: self.epsilon(),
             slivers: slivers.collect(),
             splitters,
             cells,
+        }
+    }
+
+    fn evidence_domain(&self) -> EvidenceDomain {
+        let horizon = self.domain().horizon().map(|horizon| match (horizon, self.viewpoint().surface_piece()) {
+            (Horizon::Normal(normal), _) => EvidenceHorizon::Normal(normal),
+            (Horizon::Surface, Some((piece, side))) => EvidenceHorizon::Above(piece, side),
+            (Horizon::Surface, None) => unreachable!("such a view is refused"),
+        });
+        match (self.domain(), horizon) {
+            (Domain::Frustum(frustum), _) => EvidenceDomain::Frustum(frustum.normals()),
+            (Domain::Window(windows), horizon) => {
+                let panes = windows.panes().iter().map(|pane| match pane {
+                    Pane::Polygon(polygon) => EvidencePane::Polygon(*polygon),
+                    Pane::Ring(ring) => EvidencePane::Ring(ring.clone()),
+                });
+                EvidenceDomain::Window { panes: panes.collect(), horizon }
+            }
+            (_, None) => EvidenceDomain::Sphere,
+            (_, Some(EvidenceHorizon::Normal(normal))) => EvidenceDomain::Hemisphere(normal),
+            (_, Some(EvidenceHorizon::Above(piece, side))) => EvidenceDomain::Above(piece, side),
         }
     }
 

@@ -2,7 +2,7 @@
 //! contour tree: on which side of a great circle a direction lies.
 
 use crate::bsp::{LineDef, LineId, PointId, Skeleton};
-use crate::exact::{self, Approx3, Arena, Constructor, Frame, Kept3, PredicateStats, Sign, ZeroComponents};
+use crate::exact::{self, Approx3, Arena, BitRange, Constructor, Frame, Kept3, PredicateStats, Sign, ZeroComponents};
 use crate::scene::{PlaneId, Splitter};
 use glam::DVec3;
 use num_bigint::BigInt;
@@ -23,6 +23,8 @@ enum CircleDef {
     Line(LineId),
     /// Where two planes of the scene meet, in the order of their numbers.
     Crease([PlaneId; 2]),
+    /// Through two points that are not the scene's.
+    Points([DVec3; 2]),
     Given(DVec3),
     Parallel(PlaneId),
 }
@@ -38,6 +40,8 @@ pub(crate) struct LooseDirection {
 enum DirectionDef {
     /// From the eye to a point.
     Point(PointId),
+    /// From the eye to a point that is not the scene's.
+    Towards(DVec3),
     /// `n_1 x n_2`, or its opposite.
     Crossing { circles: [CircleId; 2], reversed: bool },
 }
@@ -62,6 +66,8 @@ pub(crate) struct ExactCache {
     arena: Arena,
     normals: FxHashMap<CircleId, Kept3>,
     points: FxHashMap<PointId, Kept3>,
+    /// Of points that are not the scene's, by their bits.
+    towards: FxHashMap<[u64; 3], Kept3>,
     /// What decided the sides asked for. Calls are counted where many are made at once, so `filter` is
     /// known only at the end: see [`ExactCache::predicates`].
     undecided: PredicateStats,
@@ -77,10 +83,11 @@ impl ExactCache {
 
     /// Forgets everything but the memory.
     pub(crate) fn clear(&mut self) {
-        let Self { arena, normals, points, undecided, calls } = self;
+        let Self { arena, normals, points, towards, undecided, calls } = self;
         arena.clear();
         normals.clear();
         points.clear();
+        towards.clear();
         (*undecided, *calls) = (PredicateStats::default(), 0);
     }
 
@@ -103,9 +110,9 @@ impl ExactCache {
 }
 
 impl Directions {
-    /// None yet. The memory of other ones is used again.
-    pub(crate) fn new(skeleton: &Skeleton, eye: DVec3, former: Option<Self>) -> Self {
-        let frame = Frame::new(skeleton.bits, eye);
+    /// None yet, on a grid that holds points in that range. The memory of other ones is used again.
+    pub(crate) fn new(range: BitRange, eye: DVec3, former: Option<Self>) -> Self {
+        let frame = Frame::new(range, eye);
         let Some(former) = former else {
             return Self {
                 eye,
@@ -155,6 +162,11 @@ impl Directions {
         self.push_circle(skeleton, CircleDef::Crease(planes), skeleton.approx_crease_normal(self.eye, planes), cache)
     }
 
+    /// The great circle through two points that are not the scene's, but on the grid.
+    pub(crate) fn push_points(&mut self, skeleton: &Skeleton, ends: [DVec3; 2], cache: &mut ExactCache) -> CircleId {
+        self.push_circle(skeleton, CircleDef::Points(ends), Approx3::edge_normal(self.eye, ends[0], ends[1]), cache)
+    }
+
     pub(crate) fn push_given(&mut self, skeleton: &Skeleton, normal: DVec3, cache: &mut ExactCache) -> CircleId {
         self.push_circle(skeleton, CircleDef::Given(normal), Approx3::given(normal), cache)
     }
@@ -179,6 +191,10 @@ impl Directions {
                 let exact = self.exact_point(skeleton, point, cache);
                 cache.arena.kept_rounded(&exact)
             }
+            DirectionDef::Towards(point) => {
+                let exact = self.exact_towards(point, cache);
+                cache.arena.kept_rounded(&exact)
+            }
             DirectionDef::Crossing { circles, reversed } => {
                 let [m, n] = circles.map(|c| self.exact_normal(skeleton, c, cache));
                 if reversed { cache.arena.kept_cross(&n, &m) } else { cache.arena.kept_cross(&m, &n) }
@@ -191,6 +207,13 @@ impl Directions {
         let approx = skeleton.approx_point(point);
         let approx = Approx3::direction(self.eye, approx.position, approx.err.max_element());
         let direction = self.loose(skeleton, DirectionDef::Point(point), approx, cache);
+        self.push(direction)
+    }
+
+    /// From the eye to a point that is not the scene's, but on the grid.
+    pub(crate) fn push_towards(&mut self, skeleton: &Skeleton, point: DVec3, cache: &mut ExactCache) -> DirectionId {
+        let approx = Approx3::direction(self.eye, point, 0.0);
+        let direction = self.loose(skeleton, DirectionDef::Towards(point), approx, cache);
         self.push(direction)
     }
 
@@ -265,6 +288,10 @@ impl Directions {
                 let direction = self.exact_point(skeleton, point, cache);
                 cache.decide(|arena| arena.kept_dot_sign(&normal, &direction))
             }
+            DirectionDef::Towards(point) => {
+                let direction = self.exact_towards(point, cache);
+                cache.decide(|arena| arena.kept_dot_sign(&normal, &direction))
+            }
         }
     }
 
@@ -273,12 +300,16 @@ impl Directions {
         match (d, self.circles[c.0 as usize]) {
             (DirectionDef::Crossing { circles, .. }, _) if circles.contains(&c) => true,
             (DirectionDef::Point(point), CircleDef::Line(line)) if skeleton.known_on_line(point, line) => true,
+            (DirectionDef::Towards(point), CircleDef::Points(ends)) if ends.contains(&point) => true,
             (DirectionDef::Crossing { circles: [m, n], .. }, _) => {
                 ZeroComponents::shared([c, m, n].map(|circle| self.zeros[circle.0 as usize]))
             }
             (DirectionDef::Point(point), _) => {
                 let point = skeleton.resolved_point(skeleton.point(point));
                 ZeroComponents::of_point(&point, self.eye).cover(self.zeros[c.0 as usize])
+            }
+            (DirectionDef::Towards(point), _) => {
+                ZeroComponents::of_point(&exact::Point::Given(point), self.eye).cover(self.zeros[c.0 as usize])
             }
         }
     }
@@ -288,6 +319,7 @@ impl Directions {
         match self.circles[c.0 as usize] {
             CircleDef::Line(line) => skeleton.resolved_line(line),
             CircleDef::Crease(planes) => exact::Splitter::Crease(planes.map(|p| skeleton.resolved_plane(p))),
+            CircleDef::Points(ends) => exact::Splitter::Edge(ends),
             CircleDef::Given(normal) => exact::Splitter::Given(normal),
             CircleDef::Parallel(plane) => exact::Splitter::Parallel(skeleton.resolved_plane(plane)),
         }
@@ -332,6 +364,17 @@ impl Directions {
         x
     }
 
+    fn exact_towards(&self, point: DVec3, cache: &mut ExactCache) -> Kept3 {
+        let key = point.to_array().map(f64::to_bits);
+        if let Some(&known) = cache.towards.get(&key) {
+            return known;
+        }
+        let direction = exact::Direction::Point(exact::Point::Given(point));
+        let x = Constructor { frame: &self.frame, arena: &mut cache.arena }.keep_direction(&direction);
+        cache.towards.insert(key, x);
+        x
+    }
+
     /// On which side of the great circle a direction given by three numbers lies, exactly.
     pub(crate) fn given_side(&self, skeleton: &Skeleton, d: DVec3, c: CircleId, cache: &mut ExactCache) -> Sign {
         if let Some(sign) = Approx3::given(d).dot_sign(&self.normals[c.0 as usize]) {
@@ -373,6 +416,7 @@ impl Directions {
                 LineDef::Crease(planes) => Splitter::Crease(planes.map(|p| skeleton.plane(p))),
             },
             CircleDef::Crease(planes) => Splitter::Crease(planes.map(|p| skeleton.plane(p))),
+            CircleDef::Points(ends) => Splitter::Points(ends),
             CircleDef::Given(normal) => Splitter::Given(normal),
             CircleDef::Parallel(plane) => Splitter::Parallel(skeleton.plane(plane)),
         }

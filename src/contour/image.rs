@@ -6,6 +6,7 @@ use super::polygon::PolygonArc;
 use super::tree::{ContourTree, LeafState, Link};
 use super::view::{CellBuffers, ViewStats};
 use super::viewpoint::Viewpoint;
+use super::windows::Horizon;
 use crate::bsp::{Skeleton, UncutSliver};
 use crate::exact::Sign;
 use crate::scene::{PieceId, PolygonId, Scene, Side, Splitter};
@@ -92,12 +93,11 @@ impl ContourImage {
         &self.domain
     }
 
-    /// The unit normal of the receiver, for hemispheres.
+    /// The unit normal of the receiver, for hemispheres and windows that end at a horizon.
     pub fn normal(&self) -> Option<DVec3> {
-        match self.domain {
-            Domain::Sphere => None,
-            Domain::Hemisphere(normal) => Some((normal / normal.abs().max_element()).normalize()),
-            Domain::Above => self.viewpoint.surface_normal(self.scene(), self.skeleton()),
+        match self.domain.horizon()? {
+            Horizon::Normal(normal) => Some((normal / normal.abs().max_element()).normalize()),
+            Horizon::Surface => self.viewpoint.surface_normal(self.scene(), self.skeleton()),
         }
     }
 

@@ -8,6 +8,7 @@
 mod certify;
 mod directions;
 mod domain;
+mod frustum;
 #[cfg(feature = "geo")]
 mod geo;
 mod image;
@@ -21,12 +22,14 @@ mod subdivision;
 mod tree;
 mod view;
 mod viewpoint;
+mod windows;
 
 #[cfg(test)]
 mod tests;
 
 pub use crate::scene::Splitter;
 pub use domain::Domain;
+pub use frustum::{Frustum, FrustumError};
 #[cfg(feature = "geo")]
 pub use geo::GeoRegion;
 pub use image::{Cell, CellId, ContourImage, TreeArc};
@@ -38,3 +41,4 @@ pub use regions::{RegionLoop, RegionSide, VisibleRegion};
 pub use subdivision::{Quadtree, Spacing};
 pub use view::{ViewError, ViewOptions, ViewSpace, ViewStats, ViewsError};
 pub use viewpoint::{SurfaceError, Viewpoint};
+pub use windows::{Horizon, Pane, WindowError, Windows};

@@ -1,9 +1,11 @@
 //! The contour tree: a 2D BSP on the sphere of directions.
 
+mod claim;
+
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
 use crate::bsp::Skeleton;
-use crate::exact::{SeenBox, SeenPlane, Sign};
+use crate::exact::{BitRange, SeenBox, SeenPlane, Sign};
 use crate::scene::PieceId;
 use glam::DVec3;
 use std::ops::Range;
@@ -104,11 +106,18 @@ impl Workspace {
 }
 
 impl ContourTree {
-    /// The whole sphere seen from `eye`, cut into octants by the coordinate planes. The memory of another tree is used again.
-    pub(crate) fn octants(skeleton: &Skeleton, eye: DVec3, former: Option<Self>, knife: &mut Knife) -> Self {
+    /// The whole sphere seen from `eye`, cut into octants by the coordinate planes; points of the scene and of windows are in
+    /// `range`. The memory of another tree is used again.
+    pub(crate) fn octants(
+        skeleton: &Skeleton,
+        range: BitRange,
+        eye: DVec3,
+        former: Option<Self>,
+        knife: &mut Knife,
+    ) -> Self {
         let mut tree = match former {
             None => Self {
-                directions: Directions::new(skeleton, eye, None),
+                directions: Directions::new(range, eye, None),
                 nodes: Vec::new(),
                 leaves: Vec::new(),
                 root: Link::Node(0),
@@ -118,7 +127,7 @@ impl ContourTree {
                 nodes.clear();
                 leaves.clear();
                 arcs.clear();
-                let directions = Directions::new(skeleton, eye, Some(directions));
+                let directions = Directions::new(range, eye, Some(directions));
                 Self { directions, nodes, leaves, root: Link::Node(0), arcs }
             }
         };

@@ -3,13 +3,14 @@
 mod by_boxes;
 mod by_bsp;
 mod many;
+mod outlook;
 mod space;
 
 pub use many::ViewsError;
 pub(super) use space::CellBuffers;
 pub use space::ViewSpace;
 
-use super::directions::{CircleId, DirectionId, Directions, ExactCache};
+use super::directions::{CircleId, DirectionId};
 use super::domain::Domain;
 use super::image::ContourImage;
 use super::order::SceneOrder;
@@ -19,7 +20,7 @@ use super::tree::ContourTree;
 use super::viewpoint::Viewpoint;
 use crate::bsp::{FragmentSide, LineDef, LineId, PointId, Skeleton};
 use crate::exact::{PredicateStats, Sign};
-use crate::scene::{PieceRef, Scene, Side};
+use crate::scene::{PieceRef, PolygonId, Scene, Side};
 use glam::DVec3;
 use space::Buffers;
 
@@ -27,7 +28,7 @@ use space::Buffers;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ViewOptions {
     /// Levels of the quadtree at the top of the contour tree: 0 for octants only, 1 for quarter faces
-    /// of a cube or quarters of an image plane, each further one quarters those. `None` chooses by the size of the scene. At most 8.
+    /// of a cube or quarters of an image plane, each further one quarters those. `None` chooses by the size of the scene, 0 for windows. At most 8.
     pub quadtree_depth: Option<u32>,
     /// Where the quadtree lies.
     pub quadtree: Quadtree,
@@ -55,13 +56,21 @@ pub enum ViewError {
     /// `Domain::Above` asked for by a viewpoint that is not on a surface.
     #[error("the domain above a surface takes a viewpoint on a surface; give a normal instead")]
     NotOnSurface,
+    /// A window that is no polygon of the scene.
+    #[error("there is no polygon {polygon} to be a window: the scene has {count}, numbered from 0")]
+    UnknownWindow {
+        /// The number asked for.
+        polygon: PolygonId,
+        /// How many polygons there are.
+        count: usize,
+    },
     /// More levels than 8.
     #[error("the quadtree takes at most 8 levels, not {depth}")]
     TooDeep {
         /// The levels asked for.
         depth: u32,
     },
-    /// A quadtree on an image plane, without a hemisphere that has one, or with an angle across it that is not between 0 and 180 degrees.
+    /// A quadtree on an image plane, for another domain than a hemisphere, or with an angle across it that is not between 0 and 180 degrees.
     #[error("a quadtree on an image plane takes a hemisphere, and an angle above 0 and below 180 degrees")]
     NoImagePlane,
     /// The view falls into too many cells.
@@ -87,36 +96,10 @@ pub struct ViewStats {
     pub predicates: PredicateStats,
 }
 
-/// The horizon of a domain, if it has one.
-fn horizon(
-    scene: &Scene,
-    skeleton: &Skeleton,
-    viewpoint: &Viewpoint,
-    domain: &Domain,
-    directions: &mut Directions,
-    cache: &mut ExactCache,
-) -> Result<Option<HalfSphere>, ViewError> {
-    match *domain {
-        Domain::Sphere => Ok(None),
-        Domain::Hemisphere(normal) => {
-            if !normal.is_finite() || normal == DVec3::ZERO {
-                return Err(ViewError::BadNormal);
-            }
-            Ok(Some(HalfSphere::new(directions.push_given(skeleton, normal, cache), Sign::Positive)))
-        }
-        Domain::Above => {
-            let (piece, side) = viewpoint.surface_piece().ok_or(ViewError::NotOnSurface)?;
-            let piece = scene.piece(piece);
-            let circle = directions.push_parallel(skeleton, piece.plane_id(), cache);
-            let up = if piece.facing() == side { Sign::Positive } else { Sign::Negative };
-            Ok(Some(HalfSphere::new(circle, up)))
-        }
-    }
-}
-
 /// Levels of the quadtree for a scene of that size, by measurement (docs/performance.md).
-fn default_depth(polygons: usize) -> u32 {
+fn default_depth(polygons: usize, domain: &Domain) -> u32 {
     match polygons {
+        _ if matches!(domain, Domain::Window(_)) => 0,
         0..5_000 => 1,
         5_000..30_000 => 2,
         _ => 3,
@@ -146,29 +129,23 @@ impl<'a> Sight<'a> {
         if !eye.is_finite() {
             return Err(ViewError::EyeNotFinite);
         }
-        let depth = options.quadtree_depth.unwrap_or_else(|| default_depth(scene.polygon_count()));
+        let depth = options.quadtree_depth.unwrap_or_else(|| default_depth(scene.polygon_count(), domain));
         if depth > 8 {
             return Err(ViewError::TooDeep { depth });
         }
         if let Quadtree::Plane { degrees, .. } = options.quadtree
-            && !(degrees > 0.0 && degrees < 180.0 && *domain != Domain::Sphere)
+            && !(degrees > 0.0 && degrees < 180.0 && matches!(domain, Domain::Hemisphere(_) | Domain::Above))
         {
             return Err(ViewError::NoImagePlane);
         }
         let (former, mut buffers) = space.take(skeleton);
-        let work = &mut buffers.work;
-        let mut contour = ContourTree::octants(skeleton, eye, former, &mut work.knife);
-        let cache = &mut work.knife.cache;
-        let horizon = horizon(scene, skeleton, viewpoint, domain, &mut contour.directions, cache)?;
-        if let Some(horizon) = horizon {
-            contour.clip(skeleton, horizon, work);
-        }
-        let normal = horizon.map(|half| {
-            let normal = contour.directions.normal(half.circle()).v;
-            if half.inside().is_positive() { normal } else { -normal }
-        });
-        subdivide(&mut contour, skeleton, options.quadtree, normal, depth, work);
-        Ok(Self { skeleton, eye, contour, buffers, stats: ViewStats::default() })
+        let range = outlook::range(skeleton, domain);
+        let contour = ContourTree::octants(skeleton, range, eye, former, &mut buffers.work.knife);
+        let mut sight = Self { skeleton, eye, contour, buffers, stats: ViewStats::default() };
+        let normal = sight.cut_out(scene, viewpoint, domain, options.max_cells)?;
+        let Self { contour, buffers: Buffers { work, .. }, .. } = &mut sight;
+        subdivide(contour, skeleton, options.quadtree, normal, depth, work);
+        Ok(sight)
     }
 
     /// The error of a view that has too many cells by now.
@@ -184,7 +161,7 @@ impl<'a> Sight<'a> {
         let work = &self.buffers.work;
         let stats = ViewStats { visited_nodes: work.visited, predicates: work.knife.cache.predicates(), ..self.stats };
         let cells = space.give_back(self.buffers);
-        ContourImage::new(order, *viewpoint, *domain, self.contour, stats, cells)
+        ContourImage::new(order, *viewpoint, domain.clone(), self.contour, stats, cells)
     }
 
     /// Makes `polygon` the cone of a boundary on the plane of a piece, of which the eye is shown that side.

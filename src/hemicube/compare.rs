@@ -226,11 +226,17 @@ struct Known {
 }
 
 impl Known {
-    fn new(bsp: &SceneBsp, &(viewpoint, domain): &(Viewpoint, Domain), number: usize) -> Result<Self, CompareError> {
+    fn new(bsp: &SceneBsp, (viewpoint, domain): &(Viewpoint, Domain), number: usize) -> Result<Self, CompareError> {
+        // The baselines take all of a hemisphere.
+        if !matches!(domain, Domain::Sphere | Domain::Hemisphere(_) | Domain::Above) {
+            return Err(CompareError::NoNormal { view: number });
+        }
         let failed = |source| CompareError::Contour { view: number, source };
-        let image = bsp.view(&viewpoint, &domain).map_err(failed)?;
+        let image = bsp.view(viewpoint, domain).map_err(failed)?;
         match (image.normal(), image.form_factors()) {
-            (Some(normal), Some(exact)) => Ok(Self { number, viewpoint, domain, normal, exact }),
+            (Some(normal), Some(exact)) => {
+                Ok(Self { number, viewpoint: *viewpoint, domain: domain.clone(), normal, exact })
+            }
             _ => Err(CompareError::NoNormal { view: number }),
         }
     }
@@ -268,7 +274,7 @@ impl Tool {
     /// Takes a view: the milliseconds it took, and how many form factors were evaluated. Replaces `wanted` by the form factors of all
     /// polygons by their numbers.
     fn take(&mut self, view: &Known, mut wanted: Option<&mut Vec<f64>>) -> Result<(f64, usize), CompareError> {
-        let Known { number, ref viewpoint, domain, normal, .. } = *view;
+        let Known { number, ref viewpoint, ref domain, normal, .. } = *view;
         let failed = |source| CompareError::Baseline { view: number, source };
         if let Some(wanted) = wanted.as_deref_mut() {
             wanted.clear();
@@ -276,7 +282,7 @@ impl Tool {
         match self {
             Self::Contour(order, space) => {
                 let start = Instant::now();
-                let image = order.view_in(space, viewpoint, &domain, &ViewOptions::default());
+                let image = order.view_in(space, viewpoint, domain, &ViewOptions::default());
                 let image = image.map_err(|source| CompareError::Contour { view: number, source })?;
                 let sums = black_box(image.form_factors()).ok_or(CompareError::NoNormal { view: number })?;
                 let ms = since(start);

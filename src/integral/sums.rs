@@ -5,6 +5,7 @@ use super::{UnitDirection, solid_angle};
 use crate::contour::{Cell, ContourImage, VisibleRegion};
 use crate::scene::{ObjectId, PolygonId, Scene, Side};
 use glam::DVec3;
+use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 
 /// A quantity of a [`ContourImage`] summed over the cells of each polygon.
@@ -72,8 +73,8 @@ impl ContourImage {
     }
 
     fn sums(&self, measure: impl Fn(&[DVec3]) -> f64) -> Sums {
-        // A place for every polygon: the cells of one are added in their order.
-        let mut places = vec![None; self.scene().polygon_count()];
+        // The place of every polygon that is seen: the cells of one are added in their order.
+        let mut places = FxHashMap::default();
         let mut sums = Vec::new();
         let mut background = 0.0;
         let mut corners = Vec::new();
@@ -85,7 +86,7 @@ impl ContourImage {
                 background += value;
                 continue;
             };
-            let place = *places[polygon.index()].get_or_insert_with(|| {
+            let place = *places.entry(polygon).or_insert_with(|| {
                 sums.push(PolygonSum { polygon, front: 0.0, back: 0.0 });
                 sums.len() as u32 - 1
             });

@@ -1,10 +1,11 @@
 //! Contour images as JSON: schema `nusselt.contour/1`.
 
-use crate::contour::{ContourImage, Domain};
+use crate::contour::{ContourImage, Domain, Horizon, Pane};
 use crate::integral::{PolygonSum, Sums};
 use crate::io::json::{field, rows};
 use crate::scene::{ObjectId, Side};
 use crate::verify::Certificate;
+use glam::DVec3;
 use serde::Serialize;
 use std::io::{self, BufWriter, Write};
 
@@ -22,7 +23,7 @@ pub struct Share {
 }
 
 /// The directions that were looked at.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "kind", rename_all = "lowercase")]
 pub enum DomainRow {
     /// All of them.
@@ -32,6 +33,37 @@ pub enum DomainRow {
         /// The normal: of unit length, or as it was given.
         normal: [f64; 3],
     },
+    /// Those that a camera sees.
+    Frustum {
+        /// The unit direction that it looks in.
+        towards: [f64; 3],
+        /// The unit direction up in its picture.
+        up: [f64; 3],
+        /// The vertical field of view, in degrees.
+        fov: f64,
+        /// Width over height.
+        aspect: f64,
+        /// The half-spaces that bound it exactly, by their normals to the inside: those of the upper, right, lower and left border.
+        normals: [[f64; 3]; 4],
+    },
+    /// Those inside of windows.
+    Window {
+        /// The windows: numbers of polygons, and lists of corners.
+        windows: Vec<WindowRow>,
+        /// The normal of the horizon that they are cut off at: of unit length, or as it was given; left out if there is none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        normal: Option<[f64; 3]>,
+    },
+}
+
+/// A window.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum WindowRow {
+    /// A polygon of the scene.
+    Polygon(u32),
+    /// A polygon of its own.
+    Ring(Vec<[f64; 3]>),
 }
 
 /// A visible polygon.
@@ -162,13 +194,33 @@ impl Share {
 }
 
 pub(super) fn domain_row(image: &ContourImage) -> DomainRow {
-    let normal = match image.domain() {
-        Domain::Sphere => None,
-        Domain::Hemisphere(normal) => Some(*normal),
-        Domain::Above => image.normal(),
-    };
     // Adding 0 turns -0 into 0.
-    normal.map_or(DomainRow::Sphere, |normal| DomainRow::Hemisphere { normal: (normal + 0.0).to_array() })
+    let numbers = |v: DVec3| (v + 0.0).to_array();
+    let normal = match image.domain().horizon() {
+        None => None,
+        Some(Horizon::Normal(normal)) => Some(normal),
+        Some(Horizon::Surface) => image.normal(),
+    };
+    let normal = normal.map(numbers);
+    match image.domain() {
+        Domain::Frustum(frustum) => DomainRow::Frustum {
+            towards: numbers(frustum.frame().towards()),
+            up: numbers(frustum.frame().up()),
+            fov: frustum.degrees(),
+            aspect: frustum.aspect(),
+            normals: frustum.normals().map(numbers),
+        },
+        Domain::Window(windows) => {
+            let windows = windows.panes().iter().map(|pane| match pane {
+                Pane::Polygon(polygon) => WindowRow::Polygon(polygon.0),
+                Pane::Ring(ring) => WindowRow::Ring(ring.iter().map(|&p| numbers(p)).collect()),
+            });
+            DomainRow::Window { windows: windows.collect(), normal }
+        }
+        Domain::Sphere | Domain::Hemisphere(_) | Domain::Above => {
+            normal.map_or(DomainRow::Sphere, |normal| DomainRow::Hemisphere { normal })
+        }
+    }
 }
 
 pub(super) fn side_name(side: Side) -> &'static str {

@@ -12,7 +12,9 @@ pub enum Splitter {
     /// Through the line where two planes meet: `h_2 N_1 - h_1 N_2` with the planes' normals and the
     /// heights of the eye over them.
     Crease([SupportingPlane; 2]),
-    /// A normal given as three numbers: quadtree, horizon of a free hemisphere.
+    /// Through two points given by their coordinates, `(a - e) x (b - e)`: the side of a free window.
+    Points([DVec3; 2]),
+    /// A normal given as three numbers: quadtree, horizon of a free hemisphere, side of a frustum.
     Given(DVec3),
     /// A supporting plane moved to the eye: the horizon of a point on a surface.
     Parallel(SupportingPlane),
@@ -37,6 +39,7 @@ impl Scene {
     pub fn resolve_splitter(&self, splitter: Splitter) -> exact::Splitter {
         match splitter {
             Splitter::Edge(ends) => exact::Splitter::Edge(ends.map(|v| self.vertex(v))),
+            Splitter::Points(ends) => exact::Splitter::Edge(ends),
             Splitter::Crease(planes) => exact::Splitter::Crease(planes.map(|plane| self.resolve_plane(plane))),
             Splitter::Given(normal) => exact::Splitter::Given(normal),
             Splitter::Parallel(plane) => exact::Splitter::Parallel(self.resolve_plane(plane)),

@@ -3,7 +3,7 @@
 use super::viewpoints::{Eye, eye};
 use super::{Faces, Mode, direction, scene};
 use crate::bsp::{BspError, BspOptions, SceneBsp};
-use crate::contour::{ContourImage, Domain, ViewError, Viewpoint};
+use crate::contour::{ContourImage, Domain, Frustum, ViewError, Viewpoint, Windows};
 use crate::scene::{PolygonId, Scene, SceneError, Side};
 use glam::DVec3;
 use proptest::prelude::*;
@@ -20,6 +20,21 @@ pub enum Outlook {
     /// What is above one side of a face, from its point nearest to the case's eye; all directions if the
     /// face has no area.
     Above(usize, Side),
+    /// What a camera sees that looks along the case's direction, with so many degrees from top to bottom, 1 to 179, and an aspect of 3/2.
+    Frustum(u8),
+    /// What is seen through windows.
+    Windows(CaseWindows),
+}
+
+/// Windows of a case: faces of its scene, and the first of them moved by the case's direction.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct CaseWindows {
+    /// Numbers of faces, if there are so many.
+    pub faces: [usize; 2],
+    /// With the one that is moved, too.
+    pub with_moved: bool,
+    /// Only what is in the hemisphere about the case's direction.
+    pub within_hemisphere: bool,
 }
 
 /// A scene, an eye and a direction: what a property test draws, a fuzzer decodes, and a regression
@@ -98,7 +113,29 @@ impl Case {
                 Ok(viewpoint) => (viewpoint, Domain::Above),
                 Err(_) => (free, Domain::Sphere),
             },
+            Outlook::Frustum(degrees) => {
+                // Whatever the direction is, one of two axes is across it.
+                let towards = if self.direction == DVec3::ZERO { DVec3::X } else { self.direction };
+                let cameras = [DVec3::Z, DVec3::Y].map(|up| Frustum::new(towards, up, f64::from(degrees), 1.5));
+                let camera = cameras.into_iter().find_map(Result::ok);
+                (free, camera.map_or(Domain::Sphere, Domain::Frustum))
+            }
+            Outlook::Windows(windows) => (free, Domain::Window(self.windows(windows))),
         }
+    }
+
+    fn windows(&self, CaseWindows { faces, with_moved, within_hemisphere }: CaseWindows) -> Windows {
+        let known = faces.into_iter().filter(|&face| face < self.faces.len());
+        let mut windows = Windows::polygons(known.map(|face| PolygonId(face as u32)));
+        if with_moved && let Some(corners) = self.faces.loops().get(faces[0]) {
+            let moved: Vec<DVec3> = corners.iter().map(|&p| p + self.direction).collect();
+            // Rounding may have made it no polygon.
+            if let Ok(own) = Windows::free(&moved) {
+                windows = windows.and(&own);
+            }
+        }
+        let has_normal = within_hemisphere && self.direction != DVec3::ZERO;
+        if has_normal { windows.within_hemisphere(self.direction) } else { windows }
     }
 
     /// The view of a BSP of its scene.
@@ -145,14 +182,18 @@ pub fn case(mode: Mode) -> impl Strategy<Value = Case> {
 
 /// The same for scenes of one kind.
 pub fn case_of(mode: Mode, scenes: impl Strategy<Value = Faces>) -> impl Strategy<Value = Case> {
-    let outlook = (0u8..8, any::<Index>());
-    (scenes, eye(mode), direction(mode), outlook).prop_map(move |(faces, eye, direction, (kind, face))| {
+    let outlook = (0u8..12, any::<[Index; 2]>(), 1u8..180, any::<[bool; 2]>());
+    (scenes, eye(mode), direction(mode), outlook).prop_map(move |(faces, eye, direction, outlook)| {
+        let (kind, which, degrees, [with_moved, within_hemisphere]) = outlook;
+        let face = |k: usize| which[k].index(faces.len());
         let outlook = match kind {
             0..4 => Outlook::Sphere,
             4..6 => Outlook::Hemisphere,
+            6 => Outlook::Frustum(degrees),
             _ if faces.is_empty() => Outlook::Sphere,
-            6 => Outlook::Above(face.index(faces.len()), Side::Front),
-            _ => Outlook::Above(face.index(faces.len()), Side::Back),
+            7 => Outlook::Above(face(0), Side::Front),
+            8 => Outlook::Above(face(0), Side::Back),
+            _ => Outlook::Windows(CaseWindows { faces: [0, 1].map(face), with_moved, within_hemisphere }),
         };
         Case { mode, eye: Eye::among(&eye, &faces), faces, direction, outlook, epsilon: 0.0 }
     })

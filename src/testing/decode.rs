@@ -1,6 +1,6 @@
 //! Cases from bytes, for fuzzing: every input means something, and means the same for ever.
 
-use super::{Case, Faces, Mode, Outlook, nudged};
+use super::{Case, CaseWindows, Faces, Mode, Outlook, nudged};
 use crate::scene::Side;
 use arbitrary::{Arbitrary, Unstructured};
 use glam::DVec3;
@@ -10,7 +10,7 @@ const MOST_FACES: usize = 12;
 
 impl Case {
     /// The first byte of every input that [`Case::decode`] reads.
-    pub const VERSION: u8 = 1;
+    pub const VERSION: u8 = 2;
 
     /// Reads a case from bytes; `None` if they are of another version. Bytes past the end count as zeros.
     ///
@@ -29,7 +29,7 @@ impl Case {
     ///
     /// Kinds of eyes (remainder by 6): 0 to 2 free, 3 on a vertex, 4 in the middle of an edge, 5 in a plane.
     ///
-    /// Outlook: 0 to 3 sphere, 4, 5 hemisphere, 6 above the front of the face named with the eye, 7 above its back.
+    /// Outlook: 0, 1 sphere, 2 a frustum, 3 windows, 4, 5 hemisphere, 6 above the front of the face named with the eye, 7 above its back.
     ///
     /// Operations (remainder by 10): 0, 1 a triangle of three points; 2 a triangle that shares two
     /// corners of an earlier face; 3 a parallelogram of three points (two triangles in chaos mode); 4 a box;
@@ -57,6 +57,13 @@ impl Case {
         let eye = eye(free, [kind, face, corner], &faces);
         let face = usize::from(face) % faces.len().max(1);
         let outlook = match head >> 4 & 7 {
+            // What else there is to choose comes from the eye and the direction.
+            2 => Outlook::Frustum(1 + (direction.x.to_bits() >> 44) as u8 % 179),
+            3 => Outlook::Windows(CaseWindows {
+                faces: [face, face + 1],
+                with_moved: direction.y < 0.0,
+                within_hemisphere: eye.x < 0.0,
+            }),
             4 | 5 => Outlook::Hemisphere,
             6 if !faces.is_empty() => Outlook::Above(face, Side::Front),
             7 if !faces.is_empty() => Outlook::Above(face, Side::Back),
@@ -226,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_known_input_keeps_its_meaning() {
-        let case = Case::decode(&[1, 0, 8, 8, 8, 0, 0, 0, 8, 8, 9, 0, 8, 8, 10, 10, 8, 10, 8, 10, 10, 7, 0]).unwrap();
+        let case = Case::decode(&[2, 0, 8, 8, 8, 0, 0, 0, 8, 8, 9, 0, 8, 8, 10, 10, 8, 10, 8, 10, 10, 7, 0]).unwrap();
         let expected = Case {
             mode: Mode::Grid,
             faces: Faces::from(vec![
@@ -240,5 +247,14 @@ mod tests {
         };
         assert_eq!(case, expected);
         assert_eq!(format!("{case:?}"), format!("{case:#?}"));
+        // A camera, and windows.
+        let outlook = |head: u8, eye: u8| {
+            let bytes = [2, head, eye, 8, 8, 0, 0, 0, 8, 7, 9, 0, 8, 8, 10, 10, 8, 10, 8, 10, 10, 7, 0];
+            Case::decode(&bytes).map(|case| case.outlook)
+        };
+        assert_eq!(outlook(0x20, 8), Some(Outlook::Frustum(1)));
+        let windows = |within_hemisphere| CaseWindows { faces: [0, 1], with_moved: true, within_hemisphere };
+        assert_eq!(outlook(0x30, 8), Some(Outlook::Windows(windows(false))));
+        assert_eq!(outlook(0x30, 7), Some(Outlook::Windows(windows(true))));
     }
 }

@@ -1,6 +1,7 @@
 //! Exact vectors for the checks: plain integers of any length, with nothing of the engine's kernel.
 
 use crate::contour::Splitter;
+use crate::contour::{ContourImage, Domain, Pane};
 use crate::exact::{Plane, Point};
 use crate::scene::{Scene, SupportingPlane};
 use glam::DVec3;
@@ -66,6 +67,14 @@ impl Unit {
         Self(numbers.map(|(_, exponent)| exponent).min().unwrap_or(0))
     }
 
+    /// For all coordinates that an image is made of.
+    pub(super) fn of_image(image: &ContourImage) -> Self {
+        let windows = if let Domain::Window(windows) = image.domain() { windows.panes() } else { &[] };
+        let rings = windows.iter().filter_map(|pane| if let Pane::Ring(ring) = pane { Some(ring) } else { None });
+        let eye = image.viewpoint().eye();
+        Self::of(image.scene().vertices().iter().chain(rings.flatten()).copied().chain([eye]))
+    }
+
     pub(super) fn vector(self, p: DVec3) -> Vector {
         p.to_array().map(|x| self.integer(x))
     }
@@ -117,6 +126,10 @@ impl Unit {
         match splitter {
             Splitter::Edge(ends) => {
                 let [a, b] = ends.map(|v| minus(&self.vector(scene.vertex(v)), &eye));
+                cross(&a, &b)
+            }
+            Splitter::Points(ends) => {
+                let [a, b] = ends.map(|p| minus(&self.vector(p), &eye));
                 cross(&a, &b)
             }
             Splitter::Crease(planes) => {

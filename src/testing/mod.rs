@@ -35,7 +35,7 @@ mod scenes;
 mod viewpoints;
 
 pub use crate::verify::{RayAnswer, RayOracle};
-pub use case::{Case, CaseError, Outlook, case, case_of};
+pub use case::{Case, CaseError, CaseWindows, Outlook, case, case_of};
 pub use check::{
     Defect, FragmentFault, angle_tolerance, check_bsp, check_closed, check_fragments, check_image, check_labels,
     check_mirror, check_order, check_regions, check_same_bits, check_same_regions, check_same_view, check_sums,

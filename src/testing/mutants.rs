@@ -3,16 +3,20 @@
 use super::{Defect, inner_directions};
 use crate::contour::{ContourImage, Location};
 use crate::exact::{Direction, Kernel, Sign};
-use crate::scene::{PieceId, Scene, Splitter};
-use crate::verify::{self, Arithmetic, Evidence, EvidenceDomain, HalfSphere};
+use crate::scene::{PieceId, PolygonId, Scene, Splitter};
+use crate::verify::{self, Arithmetic, Evidence, EvidenceDomain, EvidencePane, HalfSphere};
 use glam::DVec3;
 
 /// Evidence changed in one way, chosen by the first byte; the others say where. The change may be one that leaves
 /// what is claimed as it was.
 ///
-/// `evidence` must have cells, and `scene` pieces.
+/// `scene` must have pieces. Of evidence without cells the domain is changed.
 pub fn mutated(evidence: &Evidence, scene: &Scene, bytes: [u8; 8]) -> Evidence {
     let mut changed = evidence.clone();
+    if evidence.cells.is_empty() {
+        changed.domain = other_domain(&evidence.domain, bytes);
+        return changed;
+    }
     let number = |k: usize| usize::from(bytes[k]) << 8 | usize::from(bytes[k + 1]);
     let cell = number(1) % evidence.cells.len();
     let other = number(3) % evidence.cells.len();
@@ -53,11 +57,33 @@ pub fn mutated(evidence: &Evidence, scene: &Scene, bytes: [u8; 8]) -> Evidence {
             let from = evidence.cells[cell].piece;
             changed.cells.iter_mut().filter(|cell| cell.piece == from).for_each(|cell| cell.piece = piece);
         }
-        13 => changed.domain = EvidenceDomain::Hemisphere(DVec3::AXES[usize::from(bytes[7]) % 3]),
+        13 => changed.domain = other_domain(&evidence.domain, bytes),
         14 => changed.cells[cell].sides.rotate_left(side),
         _ => changed.cells.swap(cell, other),
     }
     changed
+}
+
+/// A hemisphere, or a domain of the same kind.
+fn other_domain(domain: &EvidenceDomain, bytes: [u8; 8]) -> EvidenceDomain {
+    let axis = usize::from(bytes[7]) % 3;
+    match (domain, bytes[6] % 4) {
+        (EvidenceDomain::Frustum(normals), 0..2) => {
+            let mut normals = *normals;
+            normals[usize::from(bytes[5]) % 4][axis] += f64::from(bytes[4]) * 1e-12;
+            EvidenceDomain::Frustum(normals)
+        }
+        (EvidenceDomain::Window { panes, horizon }, 0) => {
+            let panes = panes.iter().skip(1).cloned().collect();
+            EvidenceDomain::Window { panes, horizon: *horizon }
+        }
+        (EvidenceDomain::Window { panes, horizon }, 1) => {
+            let more = EvidencePane::Polygon(PolygonId(0));
+            EvidenceDomain::Window { panes: panes.iter().cloned().chain([more]).collect(), horizon: *horizon }
+        }
+        (EvidenceDomain::Window { panes, .. }, 2) => EvidenceDomain::Window { panes: panes.clone(), horizon: None },
+        _ => EvidenceDomain::Hemisphere(DVec3::AXES[axis]),
+    }
 }
 
 /// About the same great circle, given by three numbers.
@@ -65,6 +91,7 @@ fn nudged(evidence: &Evidence, scene: &Scene, splitter: usize, how: u8) -> Split
     let from_eye = |v| scene.vertex(v) - evidence.eye;
     let normal = match evidence.splitters[splitter] {
         Splitter::Edge([a, b]) => from_eye(a).cross(from_eye(b)),
+        Splitter::Points([a, b]) => (a - evidence.eye).cross(b - evidence.eye),
         Splitter::Given(normal) => normal,
         same @ (Splitter::Crease(_) | Splitter::Parallel(_)) => return same,
     };

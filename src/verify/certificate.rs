@@ -2,7 +2,7 @@
 
 use super::checker::Checker;
 use super::defect::Defect;
-use super::evidence::{Evidence, EvidenceDomain};
+use super::evidence::{Evidence, EvidenceDomain, EvidenceHorizon, EvidencePane};
 use super::kernel_signs::KernelSigns;
 use super::rational_signs::RationalSigns;
 use super::signs::Signs;
@@ -94,6 +94,7 @@ impl Evidence {
         let has_splitter = |splitter: &Splitter| match splitter {
             Splitter::Edge(ends) => ends.iter().all(|v| v.index() < scene.vertices().len()),
             Splitter::Crease(planes) => planes.iter().all(has_plane),
+            Splitter::Points(ends) => ends.iter().all(|p| p.is_finite()),
             Splitter::Given(normal) => normal.is_finite(),
             Splitter::Parallel(plane) => has_plane(plane),
         };
@@ -101,13 +102,30 @@ impl Evidence {
         if !self.eye.is_finite() || !self.epsilon.is_finite() {
             return malformed("eye and epsilon".to_owned(), "a number is not finite");
         }
-        let is_domain = match self.domain {
-            EvidenceDomain::Sphere => true,
-            EvidenceDomain::Hemisphere(normal) => normal.is_finite() && normal != DVec3::ZERO,
-            EvidenceDomain::Above(piece, _) => has_piece(piece),
-        };
-        if !is_domain {
+        let is_normal = |normal: &DVec3| normal.is_finite() && *normal != DVec3::ZERO;
+        let is_horizon = self.domain.horizon().is_none_or(|horizon| match horizon {
+            EvidenceHorizon::Normal(normal) => is_normal(&normal),
+            EvidenceHorizon::Above(piece, _) => has_piece(piece),
+        });
+        if !is_horizon {
             return malformed("domain".to_owned(), "its normal is zero or not finite, or its piece does not exist");
+        }
+        match &self.domain {
+            EvidenceDomain::Frustum(normals) if !normals.iter().all(is_normal) => {
+                return malformed("domain".to_owned(), "a normal of the frustum is zero or not finite");
+            }
+            EvidenceDomain::Window { panes, .. } => {
+                let is_pane = |pane: &EvidencePane| match pane {
+                    EvidencePane::Polygon(polygon) => polygon.index() < scene.polygon_count(),
+                    EvidencePane::Ring(ring) => ring.len() >= 3 && ring.iter().all(|p| p.is_finite()),
+                };
+                if let Some(k) = panes.iter().position(|pane| !is_pane(pane)) {
+                    let what =
+                        "it has fewer than three points, or some that are not finite, or its polygon does not exist";
+                    return malformed(format!("window {k}"), what);
+                }
+            }
+            _ => {}
         }
         if let Some(k) = self.splitters.iter().position(|splitter| !has_splitter(splitter)) {
             return malformed(format!("splitter {k}"), "a vertex does not exist, or a number is not finite");

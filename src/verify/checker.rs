@@ -3,7 +3,8 @@
 use super::certificate::Certificate;
 use super::clip::clip;
 use super::defect::{Defect, rounded_crossing};
-use super::evidence::{Evidence, EvidenceDomain, EvidenceSliver, HalfSphere};
+use super::domain::DomainCones;
+use super::evidence::{Evidence, EvidenceHorizon, EvidenceSliver, HalfSphere};
 use super::signs::Signs;
 use crate::exact;
 use crate::exact::Sign;
@@ -23,6 +24,8 @@ pub(super) struct Checker<'a, S> {
     axes: [u32; 3],
     /// The horizon, if the domain has one.
     pub(super) horizon: Option<HalfSphere>,
+    /// What else bounds the domain, if that is not all there is.
+    pub(super) cones: Option<DomainCones>,
     /// The sides of all cells, without those that go on along the great circle of the one before.
     sides: Vec<HalfSphere>,
     starts: Vec<usize>,
@@ -63,6 +66,7 @@ impl<'a, S: Signs> Checker<'a, S> {
             circles: Vec::new(),
             axes,
             horizon: None,
+            cones: None,
             sides: Vec::new(),
             starts: vec![0],
             edges,
@@ -71,6 +75,7 @@ impl<'a, S: Signs> Checker<'a, S> {
             excuses_left: EXCUSES,
         };
         checker.horizon = checker.add_horizon()?;
+        checker.cones = checker.add_cones()?;
         let seen = evidence.cells.iter().filter_map(|cell| cell.piece);
         for piece in seen {
             for edge in scene.piece(piece).edges() {
@@ -84,22 +89,20 @@ impl<'a, S: Signs> Checker<'a, S> {
         let slivers = &evidence.slivers;
         checker.slivers.sort_by_key(|&k| slivers[k as usize].piece);
         for cell in &evidence.cells {
-            for (k, &side) in cell.sides.iter().enumerate() {
-                let before = cell.sides[k.checked_sub(1).unwrap_or(cell.sides.len() - 1)];
-                if checker.on_circle(side) != checker.on_circle(before) {
-                    checker.sides.push(side);
-                }
-            }
+            let mut sides = std::mem::take(&mut checker.sides);
+            checker.without_repeats(&cell.sides, &mut sides);
+            checker.sides = sides;
             checker.starts.push(checker.sides.len());
         }
+        checker.finish_cones()?;
         Ok(checker)
     }
 
     fn add_horizon(&mut self) -> Result<Option<HalfSphere>, Defect> {
-        let (splitter, inside) = match self.evidence.domain {
-            EvidenceDomain::Sphere => return Ok(None),
-            EvidenceDomain::Hemisphere(normal) => (exact::Splitter::Given(normal), Sign::Positive),
-            EvidenceDomain::Above(id, side) => {
+        let (splitter, inside) = match self.evidence.domain.horizon() {
+            None => return Ok(None),
+            Some(EvidenceHorizon::Normal(normal)) => (exact::Splitter::Given(normal), Sign::Positive),
+            Some(EvidenceHorizon::Above(id, side)) => {
                 let piece = self.scene.piece(id);
                 let up = if piece.facing() == side { Sign::Positive } else { Sign::Negative };
                 if self.heights[piece.plane_id().index()] * up == Sign::Negative {
@@ -109,6 +112,16 @@ impl<'a, S: Signs> Checker<'a, S> {
             }
         };
         Ok(Some(HalfSphere { splitter: self.signs.add(&splitter), inside }))
+    }
+
+    /// Adds sides without those that go on along the great circle of the one before.
+    pub(super) fn without_repeats(&self, sides: &[HalfSphere], found: &mut Vec<HalfSphere>) {
+        for (k, &side) in sides.iter().enumerate() {
+            let before = sides[k.checked_sub(1).unwrap_or(sides.len() - 1)];
+            if self.on_circle(side) != self.on_circle(before) {
+                found.push(side);
+            }
+        }
     }
 
     /// The splitter of an edge of the scene.

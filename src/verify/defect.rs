@@ -1,6 +1,6 @@
 //! What is wrong with a claimed contour image, and where.
 
-use super::evidence::{Evidence, EvidenceDomain};
+use super::evidence::{Evidence, EvidenceDomain, EvidenceHorizon, EvidencePane};
 use crate::exact::Sign;
 use crate::scene::{PieceId, PieceRef, PolygonId, Scene, Splitter, SupportingPlane, VertexId};
 use glam::DVec3;
@@ -62,7 +62,7 @@ pub enum Defect {
     )]
     Unbalanced {
         /// The great circle; left is its positive side.
-        circle: Splitter,
+        circle: Box<Splitter>,
         /// From where to where, counter-clockwise about its normal; rounded.
         stretch: [DVec3; 2],
         /// Cells on the left less cells on the right.
@@ -169,7 +169,7 @@ impl Defect {
                     }
                     Some(Splitter::Crease(planes)) => planes.iter().for_each(&mut note_plane),
                     Some(Splitter::Parallel(plane)) => note_plane(plane),
-                    Some(Splitter::Given(_)) | None => {}
+                    Some(Splitter::Given(_) | Splitter::Points(_)) | None => {}
                 }
             }
         }
@@ -178,8 +178,15 @@ impl Defect {
             Self::Hidden { by, .. } => pieces.extend([*by]),
             _ => {}
         }
-        if let EvidenceDomain::Above(piece, _) = evidence.domain {
+        if let Some(EvidenceHorizon::Above(piece, _)) = evidence.domain.horizon() {
             pieces.insert(piece);
+        }
+        if let EvidenceDomain::Window { panes, .. } = &evidence.domain {
+            let polygons = panes.iter().filter_map(|pane| match pane {
+                EvidencePane::Polygon(polygon) if polygon.index() < scene.polygon_count() => Some(*polygon),
+                EvidencePane::Polygon(_) | EvidencePane::Ring(_) => None,
+            });
+            pieces.extend(polygons.flat_map(|polygon| scene.polygon(polygon).pieces().map(PieceRef::id)));
         }
         let bounding = scene.pieces().filter(|piece| {
             let has_edge = piece.edges().iter().any(|edge| edges.contains(&scene.edges()[edge.index()]));
@@ -192,13 +199,26 @@ impl Defect {
 
     /// The eye and the polygons that take part as Rust, to paste into a test.
     pub fn to_rust(&self, evidence: &Evidence, scene: &Scene) -> String {
-        let domain = match evidence.domain {
-            EvidenceDomain::Sphere => "all directions".to_owned(),
-            EvidenceDomain::Hemisphere(normal) => format!("the hemisphere about {}", point(normal)),
-            EvidenceDomain::Above(piece, side) if piece.index() < scene.piece_count() => {
+        let horizon = evidence.domain.horizon().map(|horizon| match horizon {
+            EvidenceHorizon::Normal(normal) => format!("the hemisphere about {}", point(normal)),
+            EvidenceHorizon::Above(piece, side) if piece.index() < scene.piece_count() => {
                 format!("above the {side:?} of polygon {}", scene.piece(piece).polygon())
             }
-            EvidenceDomain::Above(piece, side) => format!("above the {side:?} of piece {piece}, which does not exist"),
+            EvidenceHorizon::Above(piece, side) => format!("above the {side:?} of piece {piece}, which does not exist"),
+        });
+        let domain = match &evidence.domain {
+            EvidenceDomain::Frustum(normals) => format!("the frustum {}", normals.map(point).join(", ")),
+            EvidenceDomain::Window { panes, .. } => {
+                let panes = panes.iter().map(|pane| match pane {
+                    EvidencePane::Polygon(polygon) => format!("polygon {polygon}"),
+                    EvidencePane::Ring(ring) => {
+                        format!("[{}]", ring.iter().map(|&p| point(p)).collect::<Vec<_>>().join(", "))
+                    }
+                });
+                let panes = panes.collect::<Vec<_>>().join(", ");
+                format!("the windows {panes} within {}", horizon.unwrap_or_else(|| "all directions".to_owned()))
+            }
+            _ => horizon.unwrap_or_else(|| "all directions".to_owned()),
         };
         let mut text = format!("// {self}\n// domain: {domain}\n// epsilon: {:?}\n", evidence.epsilon);
         let _ = writeln!(text, "let eye = {};\nlet polygons: &[&[DVec3]] = &[", point(evidence.eye));
@@ -239,6 +259,7 @@ fn show_circle(circle: &Splitter) -> String {
     match circle {
         Splitter::Edge([a, b]) => format!("through vertices {a} and {b}"),
         Splitter::Crease([p, q]) => format!("through the crease of {} and {}", show_plane(p), show_plane(q)),
+        Splitter::Points([a, b]) => format!("through {} and {}", show(*a), show(*b)),
         Splitter::Given(normal) => format!("with normal {}", show(*normal)),
         Splitter::Parallel(plane) => format!("parallel to {}", show_plane(plane)),
     }
@@ -311,7 +332,7 @@ mod tests {
     }
 
     fn unbalanced(circle: Splitter, cells: Vec<u32>) -> Defect {
-        Defect::Unbalanced { circle, stretch: [DVec3::X, DVec3::Y], count: -1, expected: 1, cells }
+        Defect::Unbalanced { circle: Box::new(circle), stretch: [DVec3::X, DVec3::Y], count: -1, expected: 1, cells }
     }
 
     #[test]

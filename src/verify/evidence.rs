@@ -1,7 +1,7 @@
 //! What a contour image claims, by exact definition: all that a proof needs beside the scene.
 
 use crate::exact::Sign;
-use crate::scene::{PieceId, Side, Splitter, SupportingPlane};
+use crate::scene::{PieceId, PolygonId, Side, Splitter, SupportingPlane};
 use glam::DVec3;
 
 /// The claim that the cells tile the domain and that each shows its piece.
@@ -26,7 +26,7 @@ pub struct Evidence {
 }
 
 /// The directions that the cells are to tile.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum EvidenceDomain {
     /// All of them.
     Sphere,
@@ -34,6 +34,45 @@ pub enum EvidenceDomain {
     Hemisphere(DVec3),
     /// Those above the supporting plane of a piece, moved to the eye; the eye is not behind that plane.
     Above(PieceId, Side),
+    /// Those inside of four half-spaces, by the normals to the inside, counter-clockwise seen from outside of the sphere.
+    Frustum([DVec3; 4]),
+    /// Those in which a window lies: the union of all of them.
+    Window {
+        /// The windows.
+        panes: Vec<EvidencePane>,
+        /// What they are cut off at.
+        horizon: Option<EvidenceHorizon>,
+    },
+}
+
+/// A window.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EvidencePane {
+    /// A polygon of the scene.
+    Polygon(PolygonId),
+    /// A convex ring of at least three points, in either direction, no three neighbours in line. Seen edge-on it has no inside.
+    Ring(Vec<DVec3>),
+}
+
+/// What a domain ends at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum EvidenceHorizon {
+    /// In it is what has `normal . d >= 0`.
+    Normal(DVec3),
+    /// In it is what is above the supporting plane of a piece, moved to the eye; the eye is not behind that plane.
+    Above(PieceId, Side),
+}
+
+impl EvidenceDomain {
+    /// What it ends at, if it has a horizon.
+    pub fn horizon(&self) -> Option<EvidenceHorizon> {
+        match *self {
+            Self::Sphere | Self::Frustum(_) => None,
+            Self::Hemisphere(normal) => Some(EvidenceHorizon::Normal(normal)),
+            Self::Above(piece, side) => Some(EvidenceHorizon::Above(piece, side)),
+            Self::Window { horizon, .. } => horizon,
+        }
+    }
 }
 
 /// A piece that may be in wrong order with others, in the part of it that lies beyond a plane by less than

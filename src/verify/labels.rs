@@ -3,6 +3,7 @@
 use super::boxes::{PieceBoxes, corners_of};
 use super::checker::Checker;
 use super::defect::Defect;
+use super::domain::DomainCones;
 use super::evidence::HalfSphere;
 use super::signs::Signs;
 use super::slivers::Disorder;
@@ -22,12 +23,15 @@ struct Work {
 
 impl<S: Signs> Checker<'_, S> {
     /// A hierarchy of the pieces that can be seen at all: those whose plane does not hold the eye, and that are not all below the
-    /// horizon, where no cell is once they are known to tile the domain.
+    /// horizon or outside of frustum and windows, where no cell is once they are known to tile the domain.
     fn boxes(&mut self) -> PieceBoxes {
         let mut seen = Vec::new();
         for piece in self.scene.pieces().filter(|piece| !self.heights[piece.plane_id().index()].is_zero()) {
             let corners = corners_of(piece);
-            if !self.horizon.is_some_and(|horizon| self.signs.box_outside(&[horizon], corners)) {
+            let signs = &mut self.signs;
+            let is_below = self.horizon.is_some_and(|horizon| signs.box_outside(&[horizon], corners));
+            let mut is_beside = |cones: &DomainCones| cones.parts.iter().all(|part| signs.box_outside(part, corners));
+            if !is_below && !self.cones.as_ref().is_some_and(&mut is_beside) {
                 seen.push((piece.id(), corners));
             }
         }

@@ -9,6 +9,7 @@ mod certificate;
 mod checker;
 mod clip;
 mod defect;
+mod domain;
 mod evidence;
 mod filter;
 mod integers;
@@ -27,5 +28,5 @@ mod tests;
 
 pub use certificate::{Arithmetic, Certificate, Extent};
 pub use defect::{Defect, Rule};
-pub use evidence::{Evidence, EvidenceCell, EvidenceDomain, EvidenceSliver, HalfSphere};
+pub use evidence::{Evidence, EvidenceCell, EvidenceDomain, EvidenceHorizon, EvidencePane, EvidenceSliver, HalfSphere};
 pub use ray::{RayAnswer, RayOracle, RayStats};

@@ -2,20 +2,22 @@
 
 use super::checker::Checker;
 use super::defect::Defect;
-use super::evidence::{EvidenceDomain, HalfSphere};
+use super::domain::DomainCones;
+use super::evidence::{EvidenceHorizon, HalfSphere};
 use super::signs::Signs;
 use crate::exact::Sign;
 use crate::scene::Splitter;
 use glam::DVec3;
 use std::cmp::Ordering;
 
-/// A side of a cell on a great circle, counter-clockwise about the normal that stands for the circle.
+/// A side of a cell, or of a part of the domain, on a great circle, counter-clockwise about the normal that stands for the circle.
 struct Arc {
     circle: u32,
-    cell: u32,
+    /// The cell; none for a part of the domain.
+    cell: Option<u32>,
     /// Its ends: each is `circle x across`.
     ends: [HalfSphere; 2],
-    /// The cell lies to the left of it (1) or to the right (-1).
+    /// What it bounds lies to the left of it (1) or to the right (-1).
     count: i64,
 }
 
@@ -55,17 +57,22 @@ impl<S: Signs> Checker<'_, S> {
     /// a simple polygon on half a sphere that does is convex, which is what is to be shown.
     fn check_convex(&mut self, cell: u32) -> Result<(), Defect> {
         let sides = self.cell(cell).to_vec();
-        let len = sides.len();
         let not_convex =
-            |corner: usize, side: usize| Defect::NotConvex { cell, corner: corner as u32, side: side as u32 };
+            |[corner, side]: [usize; 2]| Defect::NotConvex { cell, corner: corner as u32, side: side as u32 };
+        self.check_cone_is_convex(&sides).map_err(not_convex)
+    }
+
+    /// The same of any list of half spheres; tells which corner is not strictly inside of which side.
+    pub(super) fn check_cone_is_convex(&mut self, sides: &[HalfSphere]) -> Result<(), [usize; 2]> {
+        let len = sides.len();
         if len < 3 {
-            return Err(not_convex(0, 0));
+            return Err([0, 0]);
         }
         // The corner where side `k` ends against side `j`.
         let mut check = |k: usize, j: usize| {
             let corner = (k + 1) % len;
             let inside = self.orientation([sides[j], sides[k], sides[corner]]).is_positive();
-            if inside { Ok(()) } else { Err(not_convex(corner, j)) }
+            if inside { Ok(()) } else { Err([corner, j]) }
         };
         for k in 1..len {
             check(k, k - 1)?;
@@ -79,11 +86,13 @@ impl<S: Signs> Checker<'_, S> {
     }
 
     /// B: on every stretch of every great circle as many cells lie to the left as to the right, but for the
-    /// horizon, which has one more on the inside all around.
+    /// boundary of the domain, which has one more on the inside: all around a horizon, or where a side of a frustum or of windows is. These
+    /// are cut into disjoint parts ([`super::domain`]), whose sides take part with the opposite sign.
     fn check_balance(&mut self) -> Result<usize, Defect> {
         let mut arcs = self.arcs();
         arcs.sort_by_key(|arc| arc.circle);
-        let horizon = self.horizon.map(|half| self.on_circle(half));
+        // Where there are cones they end at the horizon themselves.
+        let horizon = self.horizon.filter(|_| self.cones.is_none()).map(|half| self.on_circle(half));
         if let Some((circle, inside)) = horizon
             && arcs.binary_search_by_key(&circle, |arc| arc.circle).is_err()
         {
@@ -103,8 +112,9 @@ impl<S: Signs> Checker<'_, S> {
     /// A side of a cell with the inward normal `n` runs from `n x (-n_before)` to `n x n_after`.
     fn arcs(&self) -> Vec<Arc> {
         let mut arcs = Vec::new();
-        for cell in 0..self.cell_count() {
-            let sides = self.cell(cell);
+        let cells = (0..self.cell_count()).map(|cell| (Some(cell), self.cell(cell)));
+        let parts = self.cones.iter().flat_map(|cones| &cones.parts).map(|part| (None, part.as_slice()));
+        for (cell, sides) in cells.chain(parts) {
             for (k, &side) in sides.iter().enumerate() {
                 let (circle, inside) = self.on_circle(side);
                 let before = sides[k.checked_sub(1).unwrap_or(sides.len() - 1)];
@@ -136,22 +146,28 @@ impl<S: Signs> Checker<'_, S> {
         self.sort_ends(circle, &mut ends);
         // The number of the place of each end; equal ends share one.
         let mut places = vec![[0; 2]; arcs.len()];
-        let mut deltas: Vec<(HalfSphere, i64)> = Vec::new();
+        // Of cells, and of parts of the domain.
+        let mut deltas: Vec<(HalfSphere, [i64; 2])> = Vec::new();
         for end in &ends {
             if end.is_new_place {
-                deltas.push((end.across, 0));
+                deltas.push((end.across, [0; 2]));
             }
             let place = deltas.len() - 1;
-            let count = arcs[end.arc].count;
-            deltas[place].1 += if end.is_start { count } else { -count };
+            let Arc { count, cell, .. } = arcs[end.arc];
+            deltas[place].1[usize::from(cell.is_none())] += if end.is_start { count } else { -count };
             places[end.arc][usize::from(!end.is_start)] = place;
         }
         // An arc is less than half a turn long, so one that ends at a lower place than it starts at passes the
         // stretch before the first place.
         let wraps = |arc: usize| places[arc][0] > places[arc][1];
-        let mut count: i64 = (0..arcs.len()).filter(|&arc| wraps(arc)).map(|arc| arcs[arc].count).sum();
-        for (k, &(across, delta)) in deltas.iter().enumerate() {
+        let [mut count, mut of_domain] = [true, false].map(|is_cell| {
+            let wrapping = (0..arcs.len()).filter(|&arc| wraps(arc) && arcs[arc].cell.is_some() == is_cell);
+            wrapping.map(|arc| arcs[arc].count).sum::<i64>()
+        });
+        for (k, &(across, [delta, domain_delta])) in deltas.iter().enumerate() {
             count += delta;
+            of_domain += domain_delta;
+            let expected = expected + of_domain;
             if count != expected {
                 let next = deltas[(k + 1) % deltas.len()].0;
                 let circle_side = HalfSphere { splitter: circle, inside: Sign::Positive };
@@ -160,7 +176,7 @@ impl<S: Signs> Checker<'_, S> {
                     let [from, to] = places[arc];
                     if from < to { (from..to).contains(&k) } else { k >= from || k < to }
                 };
-                let cells = (0..arcs.len()).filter(|&arc| covers(arc)).map(|arc| arcs[arc].cell).collect();
+                let cells = (0..arcs.len()).filter(|&arc| covers(arc)).filter_map(|arc| arcs[arc].cell).collect();
                 return Err(self.unbalanced(circle, stretch, count, expected, cells));
             }
         }
@@ -219,21 +235,27 @@ impl<S: Signs> Checker<'_, S> {
     }
 
     fn unbalanced(&self, circle: u32, stretch: [DVec3; 2], count: i64, expected: i64, cells: Vec<u32>) -> Defect {
-        // A circle that no splitter of the evidence is on is that of the horizon.
-        let circle = match (self.evidence.splitters.get(circle as usize), self.evidence.domain) {
-            (Some(&splitter), _) => splitter,
-            (None, EvidenceDomain::Above(piece, _)) => Splitter::Parallel(self.scene.piece(piece).plane()),
-            (None, EvidenceDomain::Hemisphere(normal)) => Splitter::Given(normal),
-            (None, EvidenceDomain::Sphere) => Splitter::Given(self.signs.rounded(circle)),
+        // A circle that no splitter of the evidence is on is that of the horizon, or of another side of the domain.
+        let of_cones = || self.cones.as_ref()?.splitters.get(&circle).copied();
+        let of_horizon = || {
+            let horizon = self.horizon.filter(|&half| self.on_circle(half).0 == circle);
+            horizon.and_then(|_| self.evidence.domain.horizon()).map(|horizon| match horizon {
+                EvidenceHorizon::Above(piece, _) => Splitter::Parallel(self.scene.piece(piece).plane()),
+                EvidenceHorizon::Normal(normal) => Splitter::Given(normal),
+            })
         };
-        Defect::Unbalanced { circle, stretch, count, expected, cells }
+        let known = self.evidence.splitters.get(circle as usize).copied();
+        let known = known.or_else(of_horizon).or_else(of_cones);
+        let circle = known.unwrap_or_else(|| Splitter::Given(self.signs.rounded(circle)));
+        Defect::Unbalanced { circle: Box::new(circle), stretch, count, expected, cells }
     }
 
     /// C: a direction off all great circles lies in one cell, or in none if it is outside of the domain.
     fn check_witness(&mut self) -> Result<(), Defect> {
         let used: Vec<u32> = {
             let cells = (0..self.cell_count()).flat_map(|cell| self.cell(cell));
-            let mut used: Vec<u32> = cells.chain(&self.horizon).map(|side| side.splitter).collect();
+            let cones = self.cones.iter().flat_map(|cones| &cones.whole).flatten();
+            let mut used: Vec<u32> = cells.chain(&self.horizon).chain(cones).map(|side| side.splitter).collect();
             used.sort_unstable();
             used.dedup();
             used
@@ -251,7 +273,9 @@ impl<S: Signs> Checker<'_, S> {
             }
             let inside = |side: &HalfSphere| signs[side.splitter as usize] == side.inside;
             let cells: Vec<u32> = (0..self.cell_count()).filter(|&cell| self.cell(cell).iter().all(inside)).collect();
-            let expected = usize::from(self.horizon.as_ref().is_none_or(inside));
+            let in_cones = |cones: &DomainCones| cones.whole.iter().any(|cone| cone.iter().all(inside));
+            let is_inside = self.horizon.as_ref().is_none_or(inside) && self.cones.as_ref().is_none_or(in_cones);
+            let expected = usize::from(is_inside);
             return if cells.len() == expected { Ok(()) } else { Err(Defect::Covered { direction, cells, expected }) };
         }
         // No splitter of a convex cell has a normal of 0, so a few thousand great circles would have to be

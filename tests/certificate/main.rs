@@ -3,6 +3,8 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod mutants;
+#[cfg(feature = "json")]
+mod windows;
 
 use common::scenes::{Case, generated, odd, soups};
 use glam::DVec3;

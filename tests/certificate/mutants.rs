@@ -49,6 +49,7 @@ fn of_each_subject(seed: u64, mut change: impl FnMut(&Scene, &Evidence, usize, &
 fn rounded(scene: &Scene, evidence: &Evidence, splitter: Splitter) -> Option<DVec3> {
     match splitter {
         Splitter::Edge([a, b]) => Some((scene.vertex(a) - evidence.eye).cross(scene.vertex(b) - evidence.eye)),
+        Splitter::Points([a, b]) => Some((a - evidence.eye).cross(b - evidence.eye)),
         Splitter::Given(normal) => Some(normal),
         Splitter::Crease(_) | Splitter::Parallel(_) => None,
     }
@@ -386,6 +387,7 @@ fn what_does_not_change_the_subdivision_passes() {
         for splitter in &mut changed.splitters {
             *splitter = match *splitter {
                 Splitter::Edge([a, b]) => Splitter::Edge([b, a]),
+                Splitter::Points([a, b]) => Splitter::Points([b, a]),
                 Splitter::Crease([p, q]) => Splitter::Crease([q, p]),
                 Splitter::Given(normal) => Splitter::Given(-normal),
                 parallel @ Splitter::Parallel(_) => parallel,
@@ -471,7 +473,7 @@ fn a_horizon_without_cells_is_named_by_what_it_is_defined_from() {
     evidence.cells.clear();
     evidence.splitters.clear();
     let named = |evidence: &Evidence| match refused(&scene, evidence, "no cells") {
-        Defect::Unbalanced { circle, count: 0, expected: 1, .. } => circle,
+        Defect::Unbalanced { circle, count: 0, expected: 1, .. } => *circle,
         defect => panic!("{defect}"),
     };
     let plane = scene.piece(PieceId(0)).plane();

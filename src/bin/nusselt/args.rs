@@ -114,6 +114,26 @@ fn parse_epsilon(text: &str) -> Result<f64, String> {
     if epsilon < 0.0 { Err("it takes a distance of at least 0".to_owned()) } else { Ok(epsilon) }
 }
 
+/// A field of view in degrees.
+pub(crate) fn parse_fov(text: &str) -> Result<f64, String> {
+    let degrees = parse_number(text)?;
+    if degrees > 0.0 && degrees < 180.0 { Ok(degrees) } else { Err("it is above 0 and below 180 degrees".to_owned()) }
+}
+
+/// Width over height: a number, or a fraction `W/H`.
+pub(crate) fn parse_aspect(text: &str) -> Result<f64, String> {
+    let (width, height) = match text.split_once('/') {
+        Some((width, height)) => (parse_number(width)?, parse_number(height)?),
+        None => (parse_number(text)?, 1.0),
+    };
+    let aspect = width / height;
+    if width > 0.0 && height > 0.0 && aspect > 0.0 && aspect.is_finite() {
+        Ok(aspect)
+    } else {
+        Err("it is a width over a height, both above 0".to_owned())
+    }
+}
+
 /// A point `X,Y,Z`.
 pub(crate) fn parse_point(text: &str) -> Result<DVec3, String> {
     let parts: Vec<&str> = text.split(',').collect();

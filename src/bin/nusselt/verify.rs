@@ -6,9 +6,10 @@ use crate::input::load;
 use crate::output::{print, print_json};
 use crate::proof::{Proof, failed_certificate, name};
 use crate::summary::{Lines, Timing, number, vector};
+use glam::DVec3;
 use nusselt::io::{CertificateRow, read_certificate};
-use nusselt::scene::{Scene, Side};
-use nusselt::verify::{Arithmetic, Evidence, EvidenceDomain};
+use nusselt::scene::{PieceId, Scene, Side};
+use nusselt::verify::{Arithmetic, Evidence, EvidenceDomain, EvidenceHorizon, EvidencePane};
 use serde_json::{Value, json};
 use std::path::PathBuf;
 use std::time::Instant;
@@ -59,22 +60,53 @@ impl Verify {
     }
 }
 
-/// The polygon and the side of it that a domain lies above.
-fn above(scene: &Scene, domain: EvidenceDomain) -> Option<(u32, &'static str)> {
-    let EvidenceDomain::Above(piece, side) = domain else { return None };
-    Some((scene.piece(piece).polygon().0, if side == Side::Front { "front" } else { "back" }))
+/// The polygon that a piece is part of, and the name of a side.
+fn surface(scene: &Scene, piece: PieceId, side: Side) -> (u32, &'static str) {
+    (scene.piece(piece).polygon().0, if side == Side::Front { "front" } else { "back" })
+}
+
+fn domain_as_json(scene: &Scene, domain: &EvidenceDomain) -> Value {
+    let horizon = domain.horizon().map(|horizon| match horizon {
+        EvidenceHorizon::Normal(normal) => json!({ "kind": "hemisphere", "normal": normal.to_array() }),
+        EvidenceHorizon::Above(piece, side) => {
+            let (polygon, side) = surface(scene, piece, side);
+            json!({ "kind": "above", "polygon": polygon, "side": side })
+        }
+    });
+    match domain {
+        EvidenceDomain::Frustum(normals) => json!({ "kind": "frustum", "normals": normals.map(|n| n.to_array()) }),
+        EvidenceDomain::Window { panes, .. } => {
+            let windows = panes.iter().map(|pane| match pane {
+                EvidencePane::Polygon(polygon) => json!(polygon.0),
+                EvidencePane::Ring(ring) => json!(ring.iter().map(DVec3::to_array).collect::<Vec<_>>()),
+            });
+            json!({ "kind": "window", "windows": windows.collect::<Vec<_>>(), "within": horizon })
+        }
+        _ => horizon.unwrap_or_else(|| json!({ "kind": "sphere" })),
+    }
+}
+
+fn domain_in_words(scene: &Scene, domain: &EvidenceDomain) -> String {
+    let horizon = domain.horizon().map(|horizon| match horizon {
+        EvidenceHorizon::Normal(normal) => format!("hemisphere about {}", vector(normal)),
+        EvidenceHorizon::Above(piece, side) => {
+            let (polygon, side) = surface(scene, piece, side);
+            format!("hemisphere above the {side} of polygon {polygon}")
+        }
+    });
+    let horizon = horizon.unwrap_or_else(|| "sphere".to_owned());
+    match domain {
+        EvidenceDomain::Frustum(normals) => format!("camera between the planes {}", normals.map(vector).join("; ")),
+        EvidenceDomain::Window { panes, .. } => format!("{} windows, {horizon}", panes.len()),
+        _ => horizon,
+    }
 }
 
 fn as_json(scene: &Scene, evidence: &Evidence, proof: &Proof, timing: Timing) -> Value {
-    let domain = match (evidence.domain, above(scene, evidence.domain)) {
-        (_, Some((polygon, side))) => json!({ "kind": "above", "polygon": polygon, "side": side }),
-        (EvidenceDomain::Hemisphere(normal), _) => json!({ "kind": "hemisphere", "normal": normal.to_array() }),
-        _ => json!({ "kind": "sphere" }),
-    };
     json!({
         "schema": "nusselt.verify/1",
         "eye": evidence.eye.to_array(),
-        "domain": domain,
+        "domain": domain_as_json(scene, &evidence.domain),
         "epsilon": evidence.epsilon,
         "slivers": evidence.slivers.len(),
         "arithmetic": name(proof.arithmetic),
@@ -86,11 +118,7 @@ fn as_json(scene: &Scene, evidence: &Evidence, proof: &Proof, timing: Timing) ->
 fn in_words(scene: &Scene, evidence: &Evidence, proof: &Proof, timing: Timing) -> String {
     let mut lines = Lines::default();
     lines.add("eye", vector(evidence.eye));
-    match (evidence.domain, above(scene, evidence.domain)) {
-        (_, Some((polygon, side))) => lines.add("domain", format!("hemisphere above the {side} of polygon {polygon}")),
-        (EvidenceDomain::Hemisphere(normal), _) => lines.add("domain", format!("hemisphere about {}", vector(normal))),
-        _ => lines.add("domain", "sphere"),
-    }
+    lines.add("domain", domain_in_words(scene, &evidence.domain));
     lines.add("epsilon", number(evidence.epsilon));
     proof.tell(&mut lines);
     lines.add("time", format!("load {:.3} s", timing.load_s));

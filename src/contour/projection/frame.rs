@@ -24,6 +24,13 @@ impl ViewFrame {
         Self { right, up: right.cross(towards), towards }
     }
 
+    /// The same, or `None` where one of the two has no direction or `up` does not tell.
+    pub(crate) fn checked(towards: DVec3, up: DVec3) -> Option<Self> {
+        let (towards, up) = (direction(towards)?, direction(up)?);
+        let across = towards.cross(up);
+        (across.length() > 1e-9).then(|| Self::new(towards, up))
+    }
+
     /// Looking along `towards` with world z up; with world y up when looking along z, so that the view
     /// up at the sky or down at the ground has north at its top (and east at the left, looking up).
     pub fn upright(towards: DVec3) -> Self {

@@ -16,7 +16,7 @@ mod tests;
 pub use frame::ViewFrame;
 pub use regions::FlatRegion;
 
-use super::{ContourImage, Domain};
+use super::{ContourImage, Domain, Frustum};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -144,19 +144,34 @@ impl Projector {
         Ok(Self { projection, frame, window, clips, seams })
     }
 
-    /// For a contour image, in the frame that suits: [`ViewFrame::new`] about the normal of a
-    /// hemisphere or about +y, [`ViewFrame::panorama`] for equirectangular pictures.
+    /// For a contour image, in the frame that suits: for a camera's view [`Frustum::frame`], in a gnomonic picture with the borders of the view;
+    /// [`ViewFrame::new`] about the normal of a hemisphere or about +y, [`ViewFrame::panorama`] for equirectangular pictures.
     ///
     /// # Errors
     /// As [`Projector::new`].
     pub fn of_image(image: &ContourImage, projection: Projection) -> Result<Self, ProjectionError> {
-        let normal = if matches!(image.domain(), Domain::Sphere) { None } else { image.normal() };
-        let towards = normal.unwrap_or(DVec3::Y);
-        let frame = match projection {
-            Projection::Equirectangular => ViewFrame::panorama(towards),
+        let normal = image.normal();
+        if let (Domain::Frustum(frustum), Projection::Gnomonic) = (image.domain(), projection) {
+            return Ok(Self::of_camera(frustum));
+        }
+        let camera = if let Domain::Frustum(frustum) = image.domain() { Some(frustum.frame()) } else { None };
+        let towards = normal.or(camera.map(ViewFrame::towards)).unwrap_or(DVec3::Y);
+        let frame = match (projection, camera) {
+            (Projection::Equirectangular, _) => ViewFrame::panorama(towards),
+            (_, Some(frame)) => frame,
             _ => ViewFrame::upright(towards),
         };
         Self::new(projection, frame, normal)
+    }
+
+    /// The image plane of a camera, at distance 1, from border to border.
+    fn of_camera(frustum: &Frustum) -> Self {
+        let height = (frustum.degrees() / 2.0).to_radians().tan();
+        let reach = DVec2::new(frustum.aspect() * height, height);
+        let clips = [DVec3::X, DVec3::Y].into_iter().zip(reach.to_array());
+        let clips = clips.flat_map(|(axis, reach)| [axis, -axis].map(|n| n + DVec3::Z * reach)).collect();
+        let window = Window { low: -reach, high: reach };
+        Self { projection: Projection::Gnomonic, frame: frustum.frame(), window, clips, seams: Vec::new() }
     }
 
     /// The projection.

@@ -7,6 +7,7 @@ use super::super::image::ContourImage;
 use super::super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
 use super::super::tree::{Filler, Link, Verdict};
 use super::super::viewpoint::Viewpoint;
+use super::super::windows::Pane;
 use super::space::Buffers;
 use super::{Sight, ViewError, ViewOptions, ViewSpace};
 use crate::bsp::{Bounds, FragmentSide, LineId};
@@ -66,8 +67,8 @@ impl SceneBvh {
     ) -> Result<ContourImage, ViewError> {
         let hierarchy = &*self.hierarchy;
         let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options, space)?;
-        let from_outside = hierarchy.solids_seen_from_outside(sight.eye);
-        let mut walk = Walk { hierarchy, sight, from_outside, creases: FxHashMap::default(), parts: Vec::new() };
+        let mut walk = Walk { hierarchy, sight, creases: FxHashMap::default(), parts: Vec::new(), windows: Vec::new() };
+        walk.put_in_windows(domain);
         walk.run(options.max_cells)?;
         Ok(walk.sight.finish(self.clone().into(), viewpoint, domain, space))
     }
@@ -76,10 +77,11 @@ impl SceneBvh {
 struct Walk<'a> {
     hierarchy: &'a Hierarchy,
     sight: Sight<'a>,
-    from_outside: Vec<bool>,
     creases: FxHashMap<[PlaneId; 2], CircleId>,
     /// Leaves in which a panel is seen, its pieces not told apart yet.
     parts: Vec<(u32, u32)>,
+    /// Pieces that were put in as windows, ascending.
+    windows: Vec<PieceId>,
 }
 
 /// What is yet to be looked at: what is nearest first, then in an order that is always the same.
@@ -142,6 +144,21 @@ impl Walk<'_> {
         self.sight.check_size(max_cells)
     }
 
+    /// Puts in the polygons of the scene that are windows. Each fills its part of the domain, so that what lies behind it is left out from
+    /// the start.
+    fn put_in_windows(&mut self, domain: &Domain) {
+        let Domain::Window(windows) = domain else { return };
+        for pane in windows.panes() {
+            let Pane::Polygon(polygon) = *pane else { continue };
+            for piece in self.hierarchy.scene.polygon(polygon).pieces() {
+                // Pieces have the same numbers as panels.
+                self.insert(piece.id().0, self.sight.contour.root);
+                self.windows.push(piece.id());
+            }
+        }
+        self.windows.sort_unstable();
+    }
+
     /// Puts in a panel; piece by piece if others lie in its plane, where the numbers of polygons tell which is seen.
     fn put_in(&mut self, panel: u32, top: Link) {
         if self.insert(panel, top) == Outcome::OneByOne {
@@ -154,13 +171,13 @@ impl Walk<'_> {
     }
 
     fn insert(&mut self, panel: u32, top: Link) -> Outcome {
-        let Self { hierarchy, sight, from_outside, creases, .. } = self;
+        let Self { hierarchy, sight, creases, windows, .. } = self;
         let eye = sight.eye;
         let sides = hierarchy.panels.sides(panel);
         let Panel { piece: id, halves, bounds, .. } = hierarchy.panels.panel(panel);
         let piece = hierarchy.scene.piece(*id);
         let Some(shown) = hierarchy.skeleton.shown_side(piece, eye) else { return Outcome::Done };
-        if hierarchy.is_inside(*id, shown, from_outside) {
+        if hierarchy.is_inside(*id, shown, eye) {
             return Outcome::Done;
         }
         sight.look_at(piece, sides, shown);
@@ -173,8 +190,18 @@ impl Walk<'_> {
         let plane = SeenPlane::new(skeleton.approx_normal(plane), skeleton.anchor(plane), eye);
         let filler = Filler { piece: *id, near, far, plane: Some(plane) };
         let is_one = halves.is_none();
-        let mut rivals =
-            Rivals { hierarchy, eye, piece, sides, is_one, shown, last: None, creases, outcome: Outcome::Done };
+        let mut rivals = Rivals {
+            hierarchy,
+            eye,
+            piece,
+            sides,
+            panel: (!is_one).then_some(panel),
+            windows,
+            shown,
+            last: None,
+            creases,
+            outcome: Outcome::Done,
+        };
         let Sight { contour, buffers: Buffers { work, polygon, .. }, .. } = sight;
         let judge = |directions: &mut Directions, knife: &mut Knife, old: PieceId, part: &[PolygonArc]| {
             rivals.judge(directions, knife, old, part)
@@ -262,7 +289,9 @@ struct Rivals<'a> {
     piece: PieceRef<'a>,
     /// The boundary of all that is put in.
     sides: &'a [FragmentSide],
-    is_one: bool,
+    /// If it is a panel of several pieces.
+    panel: Option<u32>,
+    windows: &'a [PieceId],
     shown: Side,
     last: Option<(PieceId, Order)>,
     creases: &'a mut FxHashMap<[PlaneId; 2], CircleId>,
@@ -316,13 +345,22 @@ impl Rivals<'_> {
                 (false, false) => {}
             }
         }
-        if !self.is_one {
-            return Order::InOnePlane;
+        if let Some(panel) = self.panel {
+            return if self.is_own_window(panel, old.id()) { Order::Behind } else { Order::InOnePlane };
         }
         // In one plane: fronts hide backs, then the lower number hides the higher.
         let shown = if self.height(old) == Sign::Positive { old.facing() } else { old.facing().opposite() };
         let rank = |shown: Side, piece: PieceRef<'_>| (shown == Side::Back, piece.polygon(), piece.id());
         if rank(self.shown, new) < rank(shown, old) { Order::InFront } else { Order::Behind }
+    }
+
+    /// True if a piece is one of the panel's own, that was put in before as a window: nothing else of the panel is where it is.
+    fn is_own_window(&self, panel: u32, piece: PieceId) -> bool {
+        self.windows.binary_search(&piece).is_ok() && {
+            let mut own = Vec::new();
+            self.hierarchy.panels.pieces(panel, &mut own);
+            own.contains(&piece)
+        }
     }
 
     /// On which side of the plane of a piece the eye is.

@@ -33,7 +33,7 @@ impl SceneOrder {
     /// let room = generate(Kind::Room, 200, 1)?;
     /// let order = SceneOrder::new(&room.to_builder().build()?);
     /// let up = Domain::Hemisphere(glam::DVec3::Z);
-    /// let eyes: Vec<_> = room.free_points(10, 1).into_iter().map(|p| (Viewpoint::free(p.into()), up)).collect();
+    /// let eyes: Vec<_> = room.free_points(10, 1).into_iter().map(|p| (Viewpoint::free(p.into()), up.clone())).collect();
     /// let sums = order.views(&eyes, &ViewOptions::default(), |_, image| image.form_factors().map(|f| f.total()))?;
     /// assert!(sums.iter().flatten().all(|sum| (sum - 1.0).abs() < 1e-14) && sums.len() == 10);
     /// # Ok::<(), Box<dyn std::error::Error>>(())

@@ -20,8 +20,9 @@
 //! ```
 //!
 //! *Scene*: how many vertices, polygons and convex pieces there are, so that another scene is told plainly. *Domain*:
-//! `sphere`, `hemisphere` with its `normal`, or `above` with a `piece` and its `side`. *Splitters*: great circles by
-//! what defines them, an `edge` by its vertices, a `crease` by two planes, a `given` normal, or a plane moved
+//! `sphere`, `hemisphere` with its `normal`, `above` with a `piece` and its `side`, `frustum` with its four `normals` to the inside, or `window`
+//! with its `panes`, each a `polygon` of the scene or a `ring` of points, and its `horizon`, a `normal`, `above` a piece, or `null`. *Splitters*: great circles by
+//! what defines them, an `edge` by its vertices, a line through two `points`, a `crease` by two planes, a `given` normal, or a plane moved
 //! to the eye (`parallel`); planes are `points`, three vertices, or one coordinate (`x`, `y`, `z`). *Cells*: the piece
 //! that is seen (`null` for background), and the sides counter-clockwise from outside of the sphere: splitters,
 //! counted from 1, with the sign that directions inside have. *Slivers*: what epsilon left uncut, as `piece`,

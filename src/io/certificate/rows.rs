@@ -1,7 +1,7 @@
 //! The shapes of things in a certificate's file, and what they stand for.
 
-use crate::scene::{Axis, PieceId, Scene, Side, Splitter, SupportingPlane, VertexId};
-use crate::verify::{EvidenceDomain, EvidenceSliver};
+use crate::scene::{Axis, PieceId, PolygonId, Scene, Side, Splitter, SupportingPlane, VertexId};
+use crate::verify::{EvidenceDomain, EvidenceHorizon, EvidencePane, EvidenceSliver};
 use glam::DVec3;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
@@ -91,6 +91,7 @@ impl From<PlaneRow> for SupportingPlane {
 #[serde(rename_all = "lowercase")]
 pub(super) enum SplitterRow {
     Edge([u32; 2]),
+    Points([[f64; 3]; 2]),
     Crease([PlaneRow; 2]),
     Given([f64; 3]),
     Parallel(PlaneRow),
@@ -100,6 +101,7 @@ impl From<Splitter> for SplitterRow {
     fn from(splitter: Splitter) -> Self {
         match splitter {
             Splitter::Edge(ends) => Self::Edge(ends.map(|v| v.0)),
+            Splitter::Points(ends) => Self::Points(ends.map(|p| p.to_array())),
             Splitter::Crease(planes) => Self::Crease(planes.map(PlaneRow::from)),
             Splitter::Given(normal) => Self::Given(normal.to_array()),
             Splitter::Parallel(plane) => Self::Parallel(plane.into()),
@@ -111,6 +113,7 @@ impl From<SplitterRow> for Splitter {
     fn from(row: SplitterRow) -> Self {
         match row {
             SplitterRow::Edge(ends) => Self::Edge(ends.map(VertexId)),
+            SplitterRow::Points(ends) => Self::Points(ends.map(DVec3::from)),
             SplitterRow::Crease(planes) => Self::Crease(planes.map(SupportingPlane::from)),
             SplitterRow::Given(normal) => Self::Given(DVec3::from(normal)),
             SplitterRow::Parallel(plane) => Self::Parallel(plane.into()),
@@ -123,16 +126,55 @@ impl From<SplitterRow> for Splitter {
 pub(super) enum DomainRow {
     // With braces, as else unknown fields would be taken.
     Sphere {},
-    Hemisphere { normal: [f64; 3] },
+    Hemisphere {
+        normal: [f64; 3],
+    },
+    Above {
+        piece: u32,
+        side: SideRow,
+    },
+    Frustum {
+        normals: [[f64; 3]; 4],
+    },
+    Window {
+        panes: Vec<PaneRow>,
+        #[serde(deserialize_with = "present")]
+        horizon: Option<HorizonRow>,
+    },
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(super) enum PaneRow {
+    Polygon(u32),
+    Ring(Vec<[f64; 3]>),
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "lowercase", deny_unknown_fields)]
+pub(super) enum HorizonRow {
+    Normal([f64; 3]),
     Above { piece: u32, side: SideRow },
 }
 
-impl From<EvidenceDomain> for DomainRow {
-    fn from(domain: EvidenceDomain) -> Self {
-        match domain {
+impl From<&EvidenceDomain> for DomainRow {
+    fn from(domain: &EvidenceDomain) -> Self {
+        match *domain {
             EvidenceDomain::Sphere => Self::Sphere {},
             EvidenceDomain::Hemisphere(normal) => Self::Hemisphere { normal: normal.to_array() },
             EvidenceDomain::Above(piece, side) => Self::Above { piece: piece.0, side: side.into() },
+            EvidenceDomain::Frustum(normals) => Self::Frustum { normals: normals.map(|normal| normal.to_array()) },
+            EvidenceDomain::Window { ref panes, horizon } => {
+                let panes = panes.iter().map(|pane| match pane {
+                    EvidencePane::Polygon(polygon) => PaneRow::Polygon(polygon.0),
+                    EvidencePane::Ring(ring) => PaneRow::Ring(ring.iter().map(DVec3::to_array).collect()),
+                });
+                let horizon = horizon.map(|horizon| match horizon {
+                    EvidenceHorizon::Normal(normal) => HorizonRow::Normal(normal.to_array()),
+                    EvidenceHorizon::Above(piece, side) => HorizonRow::Above { piece: piece.0, side: side.into() },
+                });
+                Self::Window { panes: panes.collect(), horizon }
+            }
         }
     }
 }
@@ -143,6 +185,18 @@ impl From<DomainRow> for EvidenceDomain {
             DomainRow::Sphere {} => Self::Sphere,
             DomainRow::Hemisphere { normal } => Self::Hemisphere(DVec3::from(normal)),
             DomainRow::Above { piece, side } => Self::Above(PieceId(piece), side.into()),
+            DomainRow::Frustum { normals } => Self::Frustum(normals.map(DVec3::from)),
+            DomainRow::Window { panes, horizon } => {
+                let panes = panes.into_iter().map(|pane| match pane {
+                    PaneRow::Polygon(polygon) => EvidencePane::Polygon(PolygonId(polygon)),
+                    PaneRow::Ring(ring) => EvidencePane::Ring(ring.into_iter().map(DVec3::from).collect()),
+                });
+                let horizon = horizon.map(|horizon| match horizon {
+                    HorizonRow::Normal(normal) => EvidenceHorizon::Normal(DVec3::from(normal)),
+                    HorizonRow::Above { piece, side } => EvidenceHorizon::Above(PieceId(piece), side.into()),
+                });
+                Self::Window { panes: panes.collect(), horizon }
+            }
         }
     }
 }

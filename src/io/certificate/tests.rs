@@ -2,8 +2,10 @@
 
 use super::*;
 use crate::exact::Sign;
-use crate::scene::{Axis, PieceId, Scene, Side, Splitter, SupportingPlane, VertexId};
-use crate::verify::{Evidence, EvidenceCell, EvidenceDomain, EvidenceSliver, HalfSphere};
+use crate::scene::{Axis, PieceId, PolygonId, Scene, Side, Splitter, SupportingPlane, VertexId};
+use crate::verify::{
+    Evidence, EvidenceCell, EvidenceDomain, EvidenceHorizon, EvidencePane, EvidenceSliver, HalfSphere,
+};
 use glam::DVec3;
 use proptest::prelude::*;
 
@@ -49,6 +51,7 @@ fn splitters() -> impl Strategy<Value = Splitter> {
     prop_oneof![
         prop::array::uniform2(any::<u32>()).prop_map(|ends| Splitter::Edge(ends.map(VertexId))),
         prop::array::uniform2(planes()).prop_map(Splitter::Crease),
+        prop::array::uniform2(vectors()).prop_map(Splitter::Points),
         vectors().prop_map(Splitter::Given),
         planes().prop_map(Splitter::Parallel),
     ]
@@ -59,6 +62,23 @@ fn domains() -> impl Strategy<Value = EvidenceDomain> {
         Just(EvidenceDomain::Sphere),
         vectors().prop_map(EvidenceDomain::Hemisphere),
         (any::<u32>(), sides()).prop_map(|(piece, side)| EvidenceDomain::Above(PieceId(piece), side)),
+        prop::array::uniform4(vectors()).prop_map(EvidenceDomain::Frustum),
+        (prop::collection::vec(panes(), 0..4), prop::option::of(horizons()))
+            .prop_map(|(panes, horizon)| EvidenceDomain::Window { panes, horizon }),
+    ]
+}
+
+fn panes() -> impl Strategy<Value = EvidencePane> {
+    prop_oneof![
+        any::<u32>().prop_map(|polygon| EvidencePane::Polygon(PolygonId(polygon))),
+        prop::collection::vec(vectors(), 0..5).prop_map(EvidencePane::Ring),
+    ]
+}
+
+fn horizons() -> impl Strategy<Value = EvidenceHorizon> {
+    prop_oneof![
+        vectors().prop_map(EvidenceHorizon::Normal),
+        (any::<u32>(), sides()).prop_map(|(piece, side)| EvidenceHorizon::Above(PieceId(piece), side)),
     ]
 }
 
@@ -173,7 +193,9 @@ fn what_is_wrong_is_named() {
         ("[0.5, 0.5, -0.0]", "[0.5, 0.5, 1e999]", "line 3"),
         ("[0.5, 0.5, -0.0]", "[0.5, 0.5, NaN]", "line 3"),
         ("[0.5, 0.5, -0.0]", "[0.5, 0.5, null]", "line 3"),
-        ("hemisphere", "frustum", "frustum"),
+        ("hemisphere", "lens", "lens"),
+        ("hemisphere", "frustum", "unknown field `normal`, expected `normals`"),
+        ("\"normal\": [0, 0, 5e-324]", "\"normal\": [0, 0, 5e-324], \"panes\": []", "unknown field `panes`"),
         ("\"kind\": \"hemisphere\", ", "", "kind"),
         ("\"kind\": \"hemisphere\", \"normal\": [0, 0, 5e-324]", "\"kind\": \"sphere\", \"normal\": 1", "normal"),
         ("\"kind\": \"hemisphere\"", "\"kind\": \"hemisphere\", \"kind\": \"sphere\"", "kind"),

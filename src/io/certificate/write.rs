@@ -47,7 +47,7 @@ pub fn write_certificate(evidence: &Evidence, scene: &Scene, out: impl Write) ->
     field(&mut out, "schema", &CERTIFICATE_SCHEMA)?;
     field(&mut out, "scene", &SceneSize::of(scene))?;
     field(&mut out, "eye", &evidence.eye.to_array())?;
-    field(&mut out, "domain", &DomainRow::from(evidence.domain))?;
+    field(&mut out, "domain", &DomainRow::from(&evidence.domain))?;
     field(&mut out, "epsilon", &evidence.epsilon)?;
     rows(&mut out, "slivers", &evidence.slivers, |out, &sliver| {
         Ok(serde_json::to_writer(out, &SliverRow::from(sliver))?)

@@ -23,7 +23,7 @@ pub(super) const STYLE: &str = "\
 
 /// How the kinds of splitters are called: class and words.
 const KINDS: [(&str, &str); 4] = [
-    ("given", "quadtree, or a free horizon"),
+    ("given", "quadtree, free horizon, or side of a camera's view"),
     ("edge", "edge of a polygon"),
     ("crease", "crease of two planes"),
     ("horizon", "horizon of a surface"),
@@ -32,7 +32,7 @@ const KINDS: [(&str, &str); 4] = [
 fn kind(splitter: &Splitter) -> usize {
     match splitter {
         Splitter::Given(_) => 0,
-        Splitter::Edge(_) => 1,
+        Splitter::Edge(_) | Splitter::Points(_) => 1,
         Splitter::Crease(_) => 2,
         Splitter::Parallel(_) => 3,
     }
@@ -56,7 +56,7 @@ pub(super) fn outlines(
             let may_end = match splitter {
                 Splitter::Edge(edge) => own.contains(&(polygon, edge)),
                 Splitter::Crease(_) => true,
-                Splitter::Given(_) | Splitter::Parallel(_) => false,
+                Splitter::Given(_) | Splitter::Points(_) | Splitter::Parallel(_) => false,
             };
             let Some(other) = (if may_end { across(cell, ends) } else { None }) else { continue };
             if other.polygon() != Some(polygon) {

@@ -179,8 +179,7 @@ struct Exact<'a> {
 
 impl<'a> Exact<'a> {
     fn new(image: &'a ContourImage) -> Self {
-        let eye = image.viewpoint().eye();
-        Self { image, unit: Unit::of(image.scene().vertices().iter().copied().chain([eye])) }
+        Self { image, unit: Unit::of_image(image) }
     }
 
     fn inward(&self, splitter: Splitter, inside: Sign) -> Vector {

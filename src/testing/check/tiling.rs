@@ -2,10 +2,10 @@
 
 use super::Defect;
 use super::labels::inner_directions;
-use crate::contour::{Cell, CellId, ContourImage, Domain, Location};
+use crate::contour::{Cell, CellId, ContourImage, Domain, Frustum, Horizon, Location, Pane};
 use crate::exact::Sign;
 use crate::scene::Side;
-use crate::testing::integers::{Unit, Vector, dot, free_vector, resolved, sign};
+use crate::testing::integers::{Unit, Vector, cross, dot, free_vector, minus, resolved, sign};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -29,14 +29,20 @@ pub(super) fn is_within(a: f64, b: f64, tolerance: f64) -> bool {
     (a - b).abs() <= tolerance
 }
 
-/// Checks that the solid angles sum to the domain's, and the form factors, if the domain has a normal,
+/// Checks that the solid angles sum to the domain's, if that is no windows, and the form factors, if the domain is a hemisphere,
 /// to 1; up to [`angle_tolerance`], which divided by pi also bounds what moving the same corners does to form factors.
 ///
 /// # Errors
 /// If they do not.
 pub fn check_sums(image: &ContourImage) -> Result<(), Defect> {
     let tolerance = angle_tolerance(image.cells());
-    let expected = if *image.domain() == Domain::Sphere { 4.0 * PI } else { 2.0 * PI };
+    let expected = match image.domain() {
+        Domain::Sphere => 4.0 * PI,
+        Domain::Hemisphere(_) | Domain::Above => 2.0 * PI,
+        Domain::Frustum(frustum) => frustum_angle(frustum),
+        // Their union has no simple formula.
+        Domain::Window(_) => return Ok(()),
+    };
     let total = image.solid_angles().total();
     if !is_within(total, expected, tolerance) {
         return Err(Defect::SolidAngles { total, expected, tolerance });
@@ -70,7 +76,7 @@ pub fn check_closed(image: &ContourImage) -> Result<(), Defect> {
 pub fn check_tiling(image: &ContourImage, directions: &[DVec3]) -> Result<(), Defect> {
     let scene = image.scene();
     let eye = image.viewpoint().eye();
-    let unit = Unit::of(scene.vertices().iter().copied().chain([eye]));
+    let unit = Unit::of_image(image);
     let cells: Vec<(CellId, Vec<Vector>)> = image
         .cells()
         .map(|cell| {
@@ -81,7 +87,7 @@ pub fn check_tiling(image: &ContourImage, directions: &[DVec3]) -> Result<(), De
             (cell.id(), inward.collect())
         })
         .collect();
-    let horizon = horizon(image, unit);
+    let outline = Outline::new(image, unit);
     for &direction in directions {
         let exact = free_vector(direction);
         let mut inside = Vec::new();
@@ -93,7 +99,7 @@ pub fn check_tiling(image: &ContourImage, directions: &[DVec3]) -> Result<(), De
                 _ => {}
             }
         }
-        let is_tiled = match horizon.as_ref().map_or(1, |up| sign(&dot(up, &exact))) {
+        let is_tiled = match outline.side(&exact) {
             1 => (inside.len() == 1 && touched == 0) || (inside.is_empty() && touched >= 2),
             0 => inside.is_empty(),
             _ => inside.is_empty() && touched == 0,
@@ -113,12 +119,69 @@ pub fn check_tiling(image: &ContourImage, directions: &[DVec3]) -> Result<(), De
     Ok(())
 }
 
+/// The solid angle between the four planes of a camera: a rectangular pyramid with half angles a and b has 4 asin(sin a sin b), where the
+/// sines are those of the angles between opposite planes.
+fn frustum_angle(frustum: &Frustum) -> f64 {
+    let (sine, cosine) = (frustum.degrees() / 2.0).to_radians().sin_cos();
+    let across = frustum.aspect() * sine;
+    4.0 * (sine * across / across.hypot(cosine)).asin()
+}
+
+/// What bounds the domain, in exact integers: normals to the inside.
+struct Outline {
+    horizon: Option<Vector>,
+    /// One list for each window; none at all if there are neither windows nor a frustum.
+    cones: Option<Vec<Vec<Vector>>>,
+}
+
+impl Outline {
+    fn new(image: &ContourImage, unit: Unit) -> Self {
+        let cones = match image.domain() {
+            Domain::Frustum(frustum) => Some(vec![frustum.normals().map(free_vector).to_vec()]),
+            Domain::Window(windows) => {
+                let rings = windows.panes().iter().flat_map(|pane| match pane {
+                    Pane::Polygon(polygon) => {
+                        let pieces = image.scene().polygon(*polygon).pieces();
+                        pieces.map(|piece| piece.points().collect()).collect()
+                    }
+                    Pane::Ring(ring) => vec![ring.clone()],
+                });
+                let eye = unit.vector(image.viewpoint().eye());
+                Some(rings.filter_map(|ring| cone_of(&ring, &eye, unit)).collect())
+            }
+            _ => None,
+        };
+        Self { horizon: horizon(image, unit), cones }
+    }
+
+    /// 1 for a direction inside, -1 for one outside, 0 for one that may be on the boundary.
+    fn side(&self, direction: &Vector) -> i32 {
+        let of = |normal: &Vector| sign(&dot(normal, direction));
+        let cones = self.cones.as_ref().map(|cones| {
+            let sides = cones.iter().map(|cone| cone.iter().map(of).min().unwrap_or(1));
+            sides.max().unwrap_or(-1)
+        });
+        self.horizon.iter().map(of).chain(cones).min().unwrap_or(1)
+    }
+}
+
+/// The normals to the inside of a convex ring's cone; `None` if it is seen edge-on.
+fn cone_of(ring: &[DVec3], eye: &Vector, unit: Unit) -> Option<Vec<Vector>> {
+    let from_eye: Vec<Vector> = ring.iter().map(|&p| minus(&unit.vector(p), eye)).collect();
+    let normals: Vec<Vector> = (0..ring.len()).map(|k| cross(&from_eye[k], &from_eye[(k + 1) % ring.len()])).collect();
+    // All corners are on one side of every side of a convex ring.
+    let heights = normals.iter().flat_map(|normal| from_eye.iter().map(|p| sign(&dot(normal, p))));
+    match heights.into_iter().find(|&height| height != 0)? {
+        1 => Some(normals),
+        _ => Some(normals.into_iter().map(|normal| normal.map(|x| -x)).collect()),
+    }
+}
+
 /// The normal of the domain's horizon, upwards.
 fn horizon(image: &ContourImage, unit: Unit) -> Option<Vector> {
-    match *image.domain() {
-        Domain::Sphere => None,
-        Domain::Hemisphere(normal) => Some(free_vector(normal)),
-        Domain::Above => {
+    match image.domain().horizon()? {
+        Horizon::Normal(normal) => Some(free_vector(normal)),
+        Horizon::Surface => {
             let scene = image.scene();
             let (piece, side) = image.viewpoint().surface_piece()?;
             let piece = scene.piece(piece);

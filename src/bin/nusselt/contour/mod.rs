@@ -3,7 +3,9 @@
 mod place;
 mod report;
 
-use crate::args::{Common, Loading, Order, Way, parse_arithmetic, parse_direction, parse_point, parse_surface};
+use crate::args::{
+    Common, Loading, Order, Way, parse_arithmetic, parse_aspect, parse_direction, parse_fov, parse_point, parse_surface,
+};
 use crate::failure::Failure;
 use crate::input::{build_order, load};
 use crate::output::{is_same_file, print, print_json, write_file, write_obj, written};
@@ -29,13 +31,20 @@ The whole sphere around a point in the air, as a panorama with the contour tree
 From the back of polygon 17
   nusselt contour room.obj --eye 2,1.5,0 --on 17:back --json
 
+What a camera sees, 60 degrees from top to bottom
+  nusselt contour room.obj --eye 2,1.5,1.2 --look-at 4,1,0.8 --fov 60 --aspect 16/9 -o camera.svg
+
+How much of a lamp, polygon 17, is seen from a point on the floor, and what hides the rest
+  nusselt contour room.obj --eye 2,1.5,0 --normal 0,0,1 --window 17
+
 The same with a proof that it is right, kept for nusselt verify
   nusselt contour room.obj --eye 2,1.5,0 --on 17:back --certificate proof.json";
 
 /// Compute the contour image: exactly what is seen from a point, and how much of it
 #[derive(clap::Args)]
 #[command(after_help = EXAMPLE)]
-#[command(group(clap::ArgGroup::new("domain").required(true).args(["normal", "sphere", "on"])))]
+#[command(group(clap::ArgGroup::new("stand").args(["normal", "sphere", "on", "look_at"])))]
+#[command(group(clap::ArgGroup::new("domain").required(true).multiple(true).args(["normal", "sphere", "on", "look_at", "window"])))]
 pub(crate) struct Contour {
     /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON
     scene: PathBuf,
@@ -52,14 +61,30 @@ pub(crate) struct Contour {
     /// Stand on polygon K, where it is nearest to --eye, on its front or back, and see what is above
     #[arg(long, value_name = "K[:back]", value_parser = parse_surface, allow_hyphen_values = true)]
     on: Option<(PolygonId, Side)>,
+    /// See what a camera sees that looks at this point
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_point, allow_hyphen_values = true, requires = "fov")]
+    look_at: Option<DVec3>,
+    /// The camera's vertical field of view in degrees, above 0 and below 180
+    #[arg(long, value_name = "DEG", value_parser = parse_fov, allow_hyphen_values = true)]
+    fov: Option<f64>,
+    /// The camera's width over height, as a number or a fraction [default: 1]
+    #[arg(long, value_name = "W/H", value_parser = parse_aspect, allow_hyphen_values = true)]
+    aspect: Option<f64>,
+    /// What is up in the camera's picture [default: 0,0,1, or 0,1,0 when looking along it]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true)]
+    up: Option<DVec3>,
+    /// See only what is in the directions of polygon K: a lamp, or a window. May be repeated; with --normal or --on only what is above
+    /// the horizon
+    #[arg(long, value_name = "K", conflicts_with = "look_at")]
+    window: Vec<u32>,
     /// Take --eye as it is, even if it lies on a polygon
-    #[arg(long, conflicts_with_all = ["sphere", "on"])]
+    #[arg(long, conflicts_with_all = ["sphere", "on", "look_at"])]
     free: bool,
     /// Write to this file; the ending decides: .json, .svg, .obj (visible parts in space), or .geojson (visible
     /// regions as polygons with holes, in coordinates of the picture). May be repeated
     #[arg(short, long, value_name = "FILE", value_parser = Output::parse)]
     output: Vec<Output>,
-    /// How to draw .svg and .geojson [default: nusselt; equirectangular for the sphere]
+    /// How to draw .svg and .geojson [default: nusselt; gnomonic for a camera, equirectangular for the sphere]
     #[arg(long, value_name = "NAME", value_parser = parse_projection)]
     projection: Option<Projection>,
     /// Draw the contour tree and the quadtree over .svg
@@ -131,9 +156,10 @@ fn parse_certificate(text: &str) -> Result<PathBuf, String> {
 impl Contour {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         let projection = self.check()?;
+        let camera = self.camera()?;
         let outputs = self.output.iter().map(|output| &output.path).chain(&self.certificate).map(PathBuf::as_path);
         let (scene, load_s) = load(&self.scene, outputs, &self.loading, common)?;
-        let (viewpoint, domain) = self.stand(&scene)?;
+        let (viewpoint, domain) = self.stand(&scene, camera)?;
         let (order, order_s) = build_order(&self.scene, &scene, &self.order, self.way())?;
         let start = Instant::now();
         let options = ViewOptions { quadtree_depth: self.quadtree_depth, ..ViewOptions::default() };
@@ -186,9 +212,14 @@ impl Contour {
             let path = certificate.display();
             return usage(format!("--certificate {path} is also written by -o; name each file once"));
         }
-        let default = if self.sphere { Projection::Equirectangular } else { Projection::Nusselt };
+        let has_horizon = self.normal.is_some() || self.on.is_some();
+        let default = match self.look_at {
+            Some(_) => Projection::Gnomonic,
+            None if has_horizon => Projection::Nusselt,
+            None => Projection::Equirectangular,
+        };
         let projection = self.projection.unwrap_or(default);
-        if self.sphere && projection == Projection::Nusselt {
+        if !has_horizon && projection == Projection::Nusselt {
             return usage(format!("--projection: {}", nusselt::contour::ProjectionError::NotAHemisphere));
         }
         if self.way == Some(Way::Boxes) && self.order.epsilon > 0.0 {

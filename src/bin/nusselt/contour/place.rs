@@ -3,17 +3,69 @@
 use super::Contour;
 use crate::failure::Failure;
 use crate::place::hemisphere;
-use nusselt::contour::{Domain, SurfaceError, Viewpoint};
+use glam::DVec3;
+use nusselt::contour::{Domain, Frustum, FrustumError, SurfaceError, Viewpoint, Windows};
 use nusselt::scene::{PolygonId, Scene, Side};
 
 impl Contour {
+    /// What the camera sees, if there is one.
+    pub(super) fn camera(&self) -> Result<Option<Frustum>, Failure> {
+        let usage = |message: String| Err(Failure::Usage(message));
+        let (Some(look_at), Some(fov)) = (self.look_at, self.fov) else {
+            let given =
+                [("--fov", self.fov.is_some()), ("--aspect", self.aspect.is_some()), ("--up", self.up.is_some())];
+            return match given.into_iter().find(|(_, is_given)| *is_given) {
+                Some((name, _)) => usage(format!("{name} is for a camera; give --look-at too")),
+                None => Ok(None),
+            };
+        };
+        let aspect = self.aspect.unwrap_or(1.0);
+        // Halves, so that no difference overflows.
+        let towards = look_at * 0.5 - self.eye * 0.5;
+        let towards = if towards == DVec3::ZERO { look_at - self.eye } else { towards };
+        if towards == DVec3::ZERO {
+            return usage("--look-at is --eye; look at another point".to_owned());
+        }
+        let made = match self.up {
+            Some(up) => Frustum::new(towards, up, fov, aspect),
+            None => match Frustum::new(towards, DVec3::Z, fov, aspect) {
+                Err(FrustumError::UpAlong) => Frustum::new(towards, DVec3::Y, fov, aspect),
+                made => made,
+            },
+        };
+        match made {
+            Ok(frustum) => Ok(Some(frustum)),
+            Err(error @ FrustumError::UpAlong) => usage(format!("--up: {error}")),
+            Err(error) => usage(format!("--look-at, --fov and --aspect: {error}")),
+        }
+    }
+
     /// Where to stand and what to look at.
-    pub(super) fn stand(&self, scene: &Scene) -> Result<(Viewpoint, Domain), Failure> {
+    pub(super) fn stand(&self, scene: &Scene, camera: Option<Frustum>) -> Result<(Viewpoint, Domain), Failure> {
+        let (viewpoint, domain) = self.stand_without_windows(scene, camera)?;
+        if self.window.is_empty() {
+            return Ok((viewpoint, domain));
+        }
+        let count = scene.polygon_count();
+        if let Some(k) = self.window.iter().find(|&&k| k as usize >= count) {
+            let message = format!("--window: there is no polygon {k}: the scene has {count}, numbered from 0");
+            return Err(Failure::Usage(message));
+        }
+        let windows = Windows::polygons(self.window.iter().copied().map(PolygonId));
+        let windows = match domain {
+            Domain::Hemisphere(normal) => windows.within_hemisphere(normal),
+            Domain::Above => windows.above_surface(),
+            _ => windows,
+        };
+        Ok((viewpoint, Domain::Window(windows)))
+    }
+
+    fn stand_without_windows(&self, scene: &Scene, camera: Option<Frustum>) -> Result<(Viewpoint, Domain), Failure> {
         if let Some((polygon, side)) = self.on {
             return Ok((self.on_polygon(scene, polygon, side)?, Domain::Above));
         }
         let Some(normal) = self.normal else {
-            return Ok((Viewpoint::free(self.eye), Domain::Sphere));
+            return Ok((Viewpoint::free(self.eye), camera.map_or(Domain::Sphere, Domain::Frustum)));
         };
         hemisphere(scene, self.eye, normal, self.free).map_err(|error| Failure::about(&self.scene, &error))
     }

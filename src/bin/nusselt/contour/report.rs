@@ -1,7 +1,7 @@
 //! The summary of a contour image, as JSON and in words.
 
-use crate::summary::{Lines, Timing, vector};
-use nusselt::contour::{ContourImage, Domain, ViewStats};
+use crate::summary::{Lines, Timing, number, vector};
+use nusselt::contour::{ContourImage, Domain, Horizon, Pane, ViewStats, Windows};
 use nusselt::exact::PredicateStats;
 use nusselt::io::{ContourSummary, Share};
 use nusselt::scene::Side;
@@ -62,6 +62,12 @@ pub(super) fn in_words(image: &ContourImage, summary: &ContourSummary<'_>, timin
         Domain::Sphere => lines.add("domain", "sphere"),
         Domain::Above => lines.add("domain", "hemisphere above the polygon"),
         Domain::Hemisphere(normal) => lines.add("domain", format!("hemisphere about {}", vector(*normal))),
+        Domain::Frustum(frustum) => {
+            let towards = vector(frustum.frame().towards());
+            let [degrees, aspect] = [frustum.degrees(), frustum.aspect()].map(number);
+            lines.add("domain", format!("camera towards {towards}, {degrees} degrees high, aspect {aspect}"));
+        }
+        Domain::Window(windows) => lines.add("domain", windows_in_words(windows)),
         _ => lines.add("domain", "other"),
     }
     let [polygons, objects] = [summary.polygons.len(), summary.objects.len()];
@@ -89,6 +95,29 @@ pub(super) fn in_words(image: &ContourImage, summary: &ContourSummary<'_>, timin
         format!("load {:.3} s, order {:.3} s, view {:.3} ms", timing.load_s, timing.bsp_s, timing.view_ms_max),
     );
     lines
+}
+
+fn windows_in_words(windows: &Windows) -> String {
+    let panes: Vec<String> = windows
+        .panes()
+        .iter()
+        .take(LISTED)
+        .map(|pane| match pane {
+            Pane::Polygon(polygon) => polygon.to_string(),
+            Pane::Ring(_) => "other".to_owned(),
+        })
+        .collect();
+    let more = if windows.panes().len() > LISTED {
+        format!(" and {} more", windows.panes().len() - LISTED)
+    } else {
+        String::new()
+    };
+    let within = match windows.horizon() {
+        None => String::new(),
+        Some(Horizon::Surface) => ", above the polygon".to_owned(),
+        Some(Horizon::Normal(normal)) => format!(", within the hemisphere about {}", vector(normal)),
+    };
+    format!("windows {}{more}{within}", panes.join(", "))
 }
 
 fn numbers(share: Share) -> String {
