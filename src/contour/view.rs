@@ -5,7 +5,7 @@ mod by_bsp;
 mod many;
 mod space;
 
-pub use many::ViewsError;
+pub use many::{ViewSpaces, ViewsError};
 pub(super) use space::CellBuffers;
 pub use space::ViewSpace;
 
