@@ -2,6 +2,7 @@
 #![cfg(feature = "cli")]
 
 use serde_json::{Value, json};
+use std::fmt::Write as _;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -181,7 +182,7 @@ fn many_points_are_read_and_written_as_they_come_in_their_order() {
     let mut text = String::new();
     for k in 0..count {
         let note = " ".repeat(500);
-        text += &format!("{} 273 300 0 {} 1 # {note}\n", 10 + k % 500, k / 500);
+        writeln!(text, "{} 273 300 0 {} 1 # {note}", 10 + k % 500, k / 500).expect("memory");
     }
     let all = lines(&folder.points("--points -", &text));
     let of = |k: usize| all.iter().filter(|line| line.0 == k).map(|line| (line.1.clone(), line.2)).collect::<Vec<_>>();

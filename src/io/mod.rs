@@ -12,6 +12,8 @@ pub mod certificate;
 pub mod cityjson;
 #[cfg(feature = "json")]
 mod contour_json;
+#[cfg(feature = "json")]
+mod digest;
 mod draft;
 mod error;
 mod formats;
@@ -22,6 +24,8 @@ pub mod gltf;
 #[cfg(feature = "json")]
 mod json;
 mod lines;
+#[cfg(feature = "json")]
+pub mod matrix;
 pub mod mtl;
 mod number;
 pub mod obj;
