@@ -16,7 +16,7 @@ pub enum MatrixFormat {
     /// `.csv`: the columns `row`, `column`, `factor` and `error`, a line for each entry that is not zero. The column is the number of a patch, `backs` or
     /// `background`.
     Csv,
-    /// `.npy` (NumPy 1.0): dense, n x (n + 2) numbers of 64 bits, row by row; backs and background come last.
+    /// `.npy` (`NumPy` 1.0): dense, n x (n + 2) numbers of 64 bits, row by row; backs and background come last.
     Npy,
     /// `.mtx` (Matrix Market): sparse, numbered from 1, n x (n + 2) likewise.
     Mtx,

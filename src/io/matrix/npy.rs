@@ -1,4 +1,4 @@
-//! The matrix as an array of NumPy: NEP 1, version 1.0.
+//! The matrix as an array of `NumPy`: NEP 1, version 1.0.
 
 use super::rows::{Source, Unwritten};
 use std::io::Write;

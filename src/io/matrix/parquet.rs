@@ -7,7 +7,7 @@ use crate::factors::Share;
 use std::io::{self, Write};
 
 pub(super) fn write<W: Write + Send>(source: &Source, out: &mut W) -> Result<(), Unwritten> {
-    let mut rows = Rows::new(out)?;
+    let mut rows = Waiting::new(out)?;
     source.for_each(|row| {
         for entry in &row.entries {
             rows.add(row.patch, entry.column.to_string(), entry.share)?;
@@ -25,7 +25,7 @@ pub(super) fn write<W: Write + Send>(source: &Source, out: &mut W) -> Result<(),
 }
 
 /// Rows of the table that are not written yet.
-struct Rows<W: Write + Send> {
+struct Waiting<W: Write + Send> {
     table: ParquetTable<W>,
     rows: Vec<i64>,
     columns: Vec<String>,
@@ -33,7 +33,7 @@ struct Rows<W: Write + Send> {
     errors: Vec<f64>,
 }
 
-impl<W: Write + Send> Rows<W> {
+impl<W: Write + Send> Waiting<W> {
     fn new(out: W) -> io::Result<Self> {
         let columns =
             [("row", Column::Whole), ("column", Column::Text), ("factor", Column::Real), ("error", Column::Real)];
