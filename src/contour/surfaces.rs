@@ -15,7 +15,7 @@ use glam::DVec3;
 ///
 /// let scene = nusselt::samples::cornell_box().to_builder().build()?;
 /// let index = SurfaceIndex::new(&scene);
-/// let (eye, up) = (DVec3::new(278.0, 200.0, 0.0), DVec3::Z);
+/// let (eye, up) = (DVec3::new(100.0, 0.0, 100.0), DVec3::Y);
 /// assert!(index.surface_at(eye, up).is_some());
 /// assert_eq!(index.surface_at(eye, up), Viewpoint::surface_at(&scene, eye, up));
 /// assert_eq!(index.surface_at(eye, DVec3::X), None);

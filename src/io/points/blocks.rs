@@ -6,6 +6,9 @@ use std::io::{self, Read};
 /// No line may be longer. Blocks are as large, or up to twice that.
 const LONGEST: usize = 1 << 20;
 
+/// Of a longer line so much is passed over to find its end; the text ends there if it has none. Standard input may never end.
+const MOST_PASSED: usize = 1 << 28;
+
 /// Reads blocks of whole lines, each line with those that it goes on in after a backslash.
 pub(super) struct Blocks<R> {
     reader: R,
@@ -75,6 +78,7 @@ impl<R: Read> Blocks<R> {
     /// Passes over a line that does not end within the buffer.
     fn pass_over(&mut self) -> io::Result<Block<'static>> {
         let number = self.lines + 1;
+        let mut left = MOST_PASSED;
         loop {
             if let Some(end) = last_end(&self.buffer) {
                 // Of what follows the line, the last block may hold more lines: only the first is passed over.
@@ -88,7 +92,9 @@ impl<R: Read> Blocks<R> {
             let passed = self.buffer.len() - kept;
             self.lines += ends(&self.buffer, passed);
             self.buffer.drain(..passed);
+            left = left.saturating_sub(passed);
             self.fill(LONGEST)?;
+            self.is_at_end |= left == 0;
             if self.is_at_end && last_end(&self.buffer).is_none() {
                 self.buffer.clear();
                 return Ok(Block::TooLong(number));
@@ -181,6 +187,13 @@ mod tests {
         for step in [usize::MAX, 65_536, 4_099] {
             assert_eq!(in_blocks(&text, step), expected, "{step}");
         }
+    }
+
+    #[test]
+    fn a_line_without_an_end_is_given_up() {
+        let mut blocks = Blocks::new(io::repeat(b' '));
+        assert!(matches!(blocks.next(), Ok(Some(Block::TooLong(1)))));
+        assert!(matches!(blocks.next(), Ok(None)));
     }
 
     #[test]
