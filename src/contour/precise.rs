@@ -6,7 +6,7 @@ use super::image::{Cell, ContourImage};
 use crate::exact::U;
 use glam::DVec3;
 
-/// Computes corners of an image's cells from integers. Vectors are sums of two, of any length.
+/// Computes corners of an image's cells. Vectors are sums of two, of any length.
 pub(crate) struct Precise<'a> {
     image: &'a ContourImage,
     cache: ExactCache,

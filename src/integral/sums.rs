@@ -75,8 +75,8 @@ impl ContourImage {
     /// The same, each sum with an error below 1e-9 of itself, or below 1e-24 if that is more: also of what is small, far, thin, cut off by
     /// other polygons or low above the horizon. `None` if the domain has no normal.
     ///
-    /// Where the bound on the error of [`ContourImage::form_factors`] is more than that, corners are computed from integers to twice
-    /// the precision of `f64`, and so is the integral (docs/integrals.md): some microseconds a cell. Where it is not, the value is the same.
+    /// Where the bound on the error of [`ContourImage::form_factors`] is more than that, corners are computed from their exact definitions
+    /// to twice the precision of `f64`, and so is the integral (docs/integrals.md): a few microseconds a cell. Where it is not, the value is the same.
     ///
     /// ```
     /// use nusselt::contour::{Domain, SceneOrder, Viewpoint};

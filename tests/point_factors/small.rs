@@ -4,6 +4,10 @@ use super::rationals::{Vector, clipped, cross, dot, exact, form_factor, minus};
 use super::{both_ways, of, scene};
 use glam::DVec3;
 use num_traits::Signed;
+use nusselt::bsp::{BspOptions, SceneBsp};
+use nusselt::contour::{Domain, SceneOrder, Viewpoint};
+use nusselt::factors::{By, PointSolver};
+use nusselt::scene::{PolygonId, Side};
 use proptest::prelude::*;
 
 /// What is asked for.
@@ -135,4 +139,30 @@ fn a_far_tiny_polygon_cut_by_two_screens_is_right_to_nine_digits() {
     let case = Case { eye, normal: DVec3::new(0.2, 0.1, 1.0), target, screens };
     let expected = case.check().unwrap_or_else(|error| panic!("{error}"));
     assert!((1e-16..1e-14).contains(&expected), "{expected:e}");
+}
+
+#[test]
+fn above_a_slanted_floor_its_exact_plane_is_the_horizon() {
+    let floor = vec![DVec3::new(0.1, 0.2, 0.05), DVec3::new(3.3, 0.1, 0.4), DVec3::new(0.3, 2.9, -0.2)];
+    let [along, across] = [floor[1] - floor[0], floor[2] - floor[0]];
+    let up = along.cross(across).normalize();
+    let near = floor.iter().sum::<DVec3>() / 3.0;
+    for (distance, width, height) in [(10.0, 1e-2, 1e-3), (1e3, 1e-2, 1e-5), (1e5, 1e-3, 1e-5), (1e3, 0.03, 1e-6)] {
+        // From below the horizon to above it; narrow, as the reference is cubature.
+        let at = |y: f64, z: f64| near + (along.normalize() + across.normalize() * y + up * z) * distance;
+        let target = vec![at(-width, -height), at(width, -height), at(width, height), at(-width, 2.0 * height)];
+        let scene = scene(&[floor.clone(), target.clone()]);
+        let viewpoint = Viewpoint::on_surface(&scene, PolygonId(0), Side::Front, near).expect("a floor");
+        let corners = [0, 1, 2].map(|k| exact(floor[k]));
+        let normal = cross(&minus(&corners[1], &corners[0]), &minus(&corners[2], &corners[0]));
+        let from_eye: Vec<_> = target.iter().map(|&p| minus(&exact(p), &exact(viewpoint.eye()))).collect();
+        let expected = form_factor(&clipped(&from_eye, &normal), &normal);
+        let bsp = SceneBsp::build(&scene, &BspOptions::default()).expect("a small scene");
+        for order in [SceneOrder::new(&scene), bsp.into()] {
+            let factors = PointSolver::new(order, By::Polygon).solve(&viewpoint, &Domain::Above).expect("a view");
+            assert_eq!(factors.on, Some(PolygonId(0)));
+            let factor = of(&factors, 1);
+            assert!((factor - expected).abs() <= ALLOWED * expected.max(1e-15), "{factor:e}, not {expected:e}");
+        }
+    }
 }
