@@ -30,7 +30,7 @@
 //! | [`bvh`] | a hierarchy of boxes: the second way to a view, without cutting polygons |
 //! | [`contour`] | the 2D BSP on the sphere of directions, contour images and their cells |
 //! | [`integral`] | solid angles and form factors of cells |
-//! | [`factors`] | form factors between patches: the matrix, row by row |
+//! | [`factors`] | form factors from points, and between patches: the matrix, row by row |
 //! | [`hemicube`] | baselines to compare with: the hemicube, with analytic form factors too, and rays |
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
 //! | [`io`] | reading scenes, writing results |

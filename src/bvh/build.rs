@@ -10,7 +10,7 @@ const LEAF: usize = 4;
 const BINS: usize = 16;
 
 /// The boxes around panels, and the order of the panels in them. None without panels.
-pub(super) fn boxes(mut order: Vec<u32>, bounds: impl Fn(u32) -> Bounds) -> (Vec<BvhNode>, Vec<u32>) {
+pub(crate) fn boxes(mut order: Vec<u32>, bounds: impl Fn(u32) -> Bounds) -> (Vec<BvhNode>, Vec<u32>) {
     let mut nodes = Vec::new();
     if !order.is_empty() {
         nodes.push(BvhNode { bounds: Bounds::EMPTY, content: Content::Panels(0..order.len() as u32) });

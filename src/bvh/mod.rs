@@ -10,6 +10,8 @@ mod panels;
 mod refit;
 mod solids;
 
+pub(crate) use build::boxes;
+
 use crate::bsp::{Bounds, PointId, Skeleton};
 use crate::scene::{PieceId, PieceRef, Scene, Side, VertexId};
 use glam::DVec3;
@@ -125,7 +127,7 @@ impl Hierarchy {
         let (panels, roots) =
             Panels::of(&scene, &skeleton, &[&pieces], MOST_PIECES, |a, b| solids.are_hidden_together(a, b));
         let roots = roots.into_iter().flatten().collect();
-        let (nodes, order) = build::boxes(roots, |panel| panels.panel(panel).bounds);
+        let (nodes, order) = boxes(roots, |panel| panels.panel(panel).bounds);
         let built_cost = refit::cost(&panels, &nodes, &order, scene.piece_count());
         Self { scene, skeleton, nodes, panels, order, solids, built_cost }
     }

@@ -1,6 +1,8 @@
 //! Great circles and directions of one view, by exact definition, and the one predicate of the
 //! contour tree: on which side of a great circle a direction lies.
 
+mod doubled;
+
 use crate::bsp::{LineDef, LineId, PointId, Skeleton};
 use crate::exact::{self, Approx3, Arena, BitRange, Constructor, Frame, Kept3, PredicateStats, Sign, ZeroComponents};
 use crate::scene::{PlaneId, Splitter};

@@ -6,7 +6,7 @@ mod many;
 mod outlook;
 mod space;
 
-pub use many::ViewsError;
+pub use many::{ViewSpaces, ViewsError};
 pub(super) use space::CellBuffers;
 pub use space::ViewSpace;
 

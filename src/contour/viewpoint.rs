@@ -106,13 +106,31 @@ impl Viewpoint {
     /// within 1e-9 of the scene's diagonal whose normal is within 1e-6 rad of `normal` or its opposite, and
     /// its side there. Of several, one that shows its front, then the nearest, then the lowest number.
     pub fn surface_at(scene: &Scene, eye: DVec3, normal: DVec3) -> Option<(PieceId, Side)> {
-        let reach = 1e-9 * scene.diagonal();
+        Self::surface_among(scene.pieces(), Self::reach(scene), eye, normal)
+    }
+
+    /// How near a sensor is to the surface that it is meant to be on.
+    pub(super) fn reach(scene: &Scene) -> f64 {
+        1e-9 * scene.diagonal()
+    }
+
+    /// True if a point is nearer than that to a box.
+    pub(super) fn is_within(low: DVec3, high: DVec3, reach: f64, eye: DVec3) -> bool {
+        ((low - reach).cmple(eye) & (high + reach).cmpge(eye)).all()
+    }
+
+    /// [`Viewpoint::surface_at`] for some pieces of a scene, in the order of their numbers.
+    pub(super) fn surface_among<'a>(
+        pieces: impl Iterator<Item = PieceRef<'a>>,
+        reach: f64,
+        eye: DVec3,
+        normal: DVec3,
+    ) -> Option<(PieceId, Side)> {
         let normal = (normal / normal.abs().max_element()).try_normalize()?;
-        let candidates = scene.pieces().filter_map(|piece| {
+        let candidates = pieces.filter_map(|piece| {
             let corners = piece.points();
             let (low, high) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(l, h), p| (l.min(p), h.max(p)));
-            let near = (low - reach).cmple(eye) & (high + reach).cmpge(eye);
-            let facing = near.all().then(|| unit_normal(scene, piece))?;
+            let facing = Self::is_within(low, high, reach, eye).then(|| unit_normal(piece.scene(), piece))?;
             if facing.cross(normal).length() > 1e-6 {
                 return None;
             }

@@ -4,6 +4,8 @@
 //! buffer keeps its capacity, so that a warmed-up arena does not touch the heap, and there is no
 //! width beyond which a result would be wrong: coordinates that span 2,000 bits just take longer.
 
+mod double;
+
 use super::{Approx3, Sign, U, fixed};
 use glam::DVec3;
 use num_bigint::BigInt;

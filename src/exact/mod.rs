@@ -10,6 +10,7 @@ mod ball;
 mod boxes;
 mod construct;
 mod definition;
+pub(crate) mod double;
 mod fixed;
 mod frame;
 mod kernel;

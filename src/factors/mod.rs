@@ -1,7 +1,7 @@
-//! Form factors between patches: the matrix of radiation exchange, row by row.
+//! Form factors from points ([`PointSolver`]), and between patches: the matrix of radiation exchange, row by row ([`Exchange`]).
 //!
 //! F[i][j] is the part of what leaves the front of patch i, diffusely, that arrives at the front of patch j; what arrives at backs and
-//! what leaves the scene are told apart, so that every row sums to 1. See [`Exchange`].
+//! what leaves the scene are told apart, so that every row sums to 1.
 //!
 //! `docs/form-factors.md` tells how, with what accuracy and at what cost.
 
@@ -18,6 +18,7 @@ mod hidden;
 mod mesh;
 mod options;
 mod pair;
+mod points;
 mod row;
 mod seen;
 mod shaft;
@@ -27,4 +28,5 @@ mod tree;
 pub use error::ExchangeError;
 pub use exchange::Exchange;
 pub use options::{ExchangeOptions, PatchPlan, Sides};
+pub use points::{By, PointError, PointFactors, PointSolver, PointsError};
 pub use row::{Entry, PatchInfo, Row, Share};

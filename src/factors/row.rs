@@ -31,7 +31,7 @@ pub struct Entry {
     pub share: Share,
 }
 
-/// The form factors F[i][j] from the front of patch i to the fronts of all patches j, to backs, and to the background.
+/// The form factors `F[i][j]` from the front of patch i to the fronts of all patches j, to backs, and to the background.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     /// The number i of the patch.

@@ -7,6 +7,7 @@
 
 mod flux;
 mod form_factor;
+mod precise;
 mod solid_angle;
 mod sums;
 mod unit;

@@ -1,6 +1,7 @@
 //! Solid angles and form factors of what a contour image shows.
 
 use super::form_factor::form_factor_of_rounded;
+use super::precise::{Bounded, PreciseFactors};
 use super::{UnitDirection, solid_angle};
 use crate::contour::{Cell, ContourImage, VisibleRegion};
 use crate::scene::{ObjectId, PolygonId, Scene, Side};
@@ -72,29 +73,100 @@ impl ContourImage {
         Some(self.sums(|corners| form_factor_of_rounded(corners, normal)))
     }
 
-    fn sums(&self, measure: impl Fn(&[DVec3]) -> f64) -> Sums {
-        // The place of every polygon that is seen: the cells of one are added in their order.
-        let mut places = FxHashMap::default();
-        let mut sums = Vec::new();
-        let mut background = 0.0;
+    /// The same, each sum with an error below 1e-9 of itself, or below 1e-24 if that is more: also of what is small, far, thin, cut off by
+    /// other polygons or low above the horizon. `None` if the domain has no normal.
+    ///
+    /// Where the bound on the error of [`ContourImage::form_factors`] is more than that, corners are computed from their exact definitions
+    /// to twice the precision of `f64`, and so is the integral (docs/integrals.md): a few microseconds a cell. Where it is not, the value is the same.
+    ///
+    /// ```
+    /// use nusselt::contour::{Domain, SceneOrder, Viewpoint};
+    /// use nusselt::scene::{Material, Scene};
+    ///
+    /// // A millimetre in ten kilometres, half of it behind a screen: the corners of what is seen are crossings.
+    /// let far = [[-5e-4, -5e-4, 1e4], [5e-4, -5e-4, 1e4], [5e-4, 5e-4, 1e4], [-5e-4, 5e-4, 1e4]];
+    /// let screen = [[0., -1., 1.], [1., -1., 1.], [1., 1., 1.], [0., 1., 1.]];
+    /// let square = [vec![0, 1, 2, 3]];
+    /// let builder = Scene::builder().mesh(&far, &square, Material::new("far"));
+    /// let scene = builder.mesh(&screen, &square, Material::new("screen")).build()?;
+    /// let up = Domain::Hemisphere(glam::DVec3::Z);
+    /// let image = SceneOrder::new(&scene).view(&Viewpoint::free(glam::DVec3::ZERO), &up)?;
+    /// let factors = image.precise_form_factors().expect("a hemisphere has a normal");
+    /// let expected = 0.5e-6 / (std::f64::consts::PI * 1e8);
+    /// assert!((factors.polygons[0].both() / expected - 1.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn precise_form_factors(&self) -> Option<Sums> {
+        let normal = UnitDirection::new(self.normal()?)?;
+        let mut places = Places::default();
+        let mut sums: Vec<Bounded> = Vec::new();
         let mut corners = Vec::new();
         for cell in self.cells() {
             corners.clear();
             corners.extend(cell.boundary());
-            let value = measure(&corners);
-            let (Some(polygon), Some(side)) = (cell.polygon(), cell.side()) else {
-                background += value;
-                continue;
-            };
-            let place = *places.entry(polygon).or_insert_with(|| {
-                sums.push(PolygonSum { polygon, front: 0.0, back: 0.0 });
-                sums.len() as u32 - 1
-            });
-            let sum = &mut sums[place as usize];
-            *(if side == Side::Front { &mut sum.front } else { &mut sum.back }) += value;
+            let factor = form_factor_of_rounded(&corners, normal);
+            let place = places.of(cell);
+            sums.resize(sums.len().max(place + 1), Bounded::default());
+            sums[place].add(Bounded::of(cell, &corners, normal.rounded(), factor));
         }
-        sums.sort_unstable_by_key(|sum| sum.polygon);
-        Sums { polygons: sums, background }
+        let is_poor: Vec<bool> = sums.iter().map(|sum| sum.is_poor()).collect();
+        if is_poor.contains(&true) {
+            let mut precise = PreciseFactors::new(self)?;
+            for (sum, _) in sums.iter_mut().zip(&is_poor).filter(|(_, is_poor)| **is_poor) {
+                sum.value = 0.0;
+            }
+            for cell in self.cells() {
+                let place = places.of(cell);
+                if is_poor[place] {
+                    sums[place].value += precise.of(cell);
+                }
+            }
+        }
+        Some(places.sums(|place| sums.get(place).map_or(0.0, |sum| sum.value)))
+    }
+
+    fn sums(&self, measure: impl Fn(&[DVec3]) -> f64) -> Sums {
+        let mut places = Places::default();
+        let mut sums = Vec::new();
+        let mut corners = Vec::new();
+        for cell in self.cells() {
+            corners.clear();
+            corners.extend(cell.boundary());
+            let place = places.of(cell);
+            sums.resize(sums.len().max(place + 1), 0.0);
+            sums[place] += measure(&corners);
+        }
+        places.sums(|place| sums.get(place).copied().unwrap_or(0.0))
+    }
+}
+
+/// A place for a sum of each side of each visible polygon, and the first one for the background: the cells of one are added in
+/// their order.
+#[derive(Default)]
+struct Places {
+    /// One more than half the place of the front. Not by all polygons: few may be seen of many.
+    of_polygon: FxHashMap<PolygonId, u32>,
+    visible: Vec<PolygonId>,
+}
+
+impl Places {
+    fn of(&mut self, cell: Cell<'_>) -> usize {
+        let (Some(polygon), Some(side)) = (cell.polygon(), cell.side()) else { return 0 };
+        let visible = &mut self.visible;
+        let number = *self.of_polygon.entry(polygon).or_insert_with(|| {
+            visible.push(polygon);
+            visible.len() as u32
+        });
+        number as usize * 2 - usize::from(side == Side::Front)
+    }
+
+    fn sums(mut self, at: impl Fn(usize) -> f64) -> Sums {
+        self.visible.sort_unstable();
+        let sum = |polygon: PolygonId| {
+            let place = self.of_polygon[&polygon] as usize * 2;
+            PolygonSum { polygon, front: at(place - 1), back: at(place) }
+        };
+        Sums { polygons: self.visible.iter().map(|&polygon| sum(polygon)).collect(), background: at(0) }
     }
 }
 

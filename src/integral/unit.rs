@@ -5,6 +5,7 @@
 //! 1e-10 of the cell. So vertices are normalised in double-double arithmetic (Dekker 1971), and
 //! the only thing that is taken from the low parts is the difference of two vertices.
 
+use crate::exact::double::{Double, Double3, fast_two_sum, two_product, two_sum};
 use glam::DVec3;
 
 /// A unit vector as an unevaluated sum of two `f64` vectors; its relative error is below 2^-98.
@@ -43,6 +44,11 @@ impl UnitDirection {
     /// The vector rounded to `f64`.
     pub fn rounded(&self) -> DVec3 {
         self.hi
+    }
+
+    /// Its components.
+    pub(super) fn doubles(&self) -> Double3 {
+        [0, 1, 2].map(|k| Double { hi: self.hi[k], lo: self.lo[k] })
     }
 
     /// `self - other`, with an error of one unit in its own last place or 1e-31, whichever is more.
@@ -113,29 +119,4 @@ fn inverse_length(parts: [[f64; 2]; 3]) -> [f64; 2] {
     let [one, one_low] = two_product(square, s);
     let residual = (1.0 - one) - (one_low + (square * s_low + square_low * s));
     [inverse, 0.5 * inverse * residual]
-}
-
-/// a + b as a rounded sum and its error (Knuth).
-fn two_sum(a: f64, b: f64) -> [f64; 2] {
-    let sum = a + b;
-    let b_part = sum - a;
-    [sum, (a - (sum - b_part)) + (b - b_part)]
-}
-
-/// The same for |a| >= |b|.
-fn fast_two_sum(a: f64, b: f64) -> [f64; 2] {
-    let sum = a + b;
-    [sum, b - (sum - a)]
-}
-
-/// a * b as a rounded product and its error (Dekker), for numbers far from over- and underflow.
-fn two_product(a: f64, b: f64) -> [f64; 2] {
-    let halves = |x: f64| {
-        let c = 134_217_729.0 * x;
-        let high = c - (c - x);
-        [high, x - high]
-    };
-    let product = a * b;
-    let ([ah, al], [bh, bl]) = (halves(a), halves(b));
-    [product, al * bl - (((product - ah * bh) - al * bh) - ah * bl)]
 }

@@ -27,8 +27,18 @@ pub(super) fn is_blank(c: char) -> bool {
 /// goes on in the next. A `#` starts a comment at the start of a line or after a blank, so that
 /// names may contain it. Bytes that are not UTF-8 are read as U+FFFD.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
-    let mut rest = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let mut count = 0;
+    lines_after(without_mark(bytes), 0)
+}
+
+/// The bytes without the mark that a file of text may start with.
+pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+/// The same of bytes that so many lines of the file come before.
+pub(super) fn lines_after(bytes: &[u8], before: usize) -> impl Iterator<Item = Line<'_>> {
+    let mut rest = bytes;
+    let mut count = before;
     std::iter::from_fn(move || {
         while !rest.is_empty() {
             let number = count + 1;

@@ -12,6 +12,8 @@ pub mod certificate;
 pub mod cityjson;
 #[cfg(feature = "json")]
 mod contour_json;
+#[cfg(feature = "json")]
+mod digest;
 mod draft;
 mod error;
 mod formats;
@@ -22,11 +24,17 @@ pub mod gltf;
 #[cfg(feature = "json")]
 mod json;
 mod lines;
+#[cfg(feature = "json")]
+pub mod matrix;
 pub mod mtl;
 mod number;
 pub mod obj;
+#[cfg(feature = "parquet")]
+mod parquet;
 pub mod ply;
+mod point_factors;
 mod points;
+mod quoted;
 pub mod stl;
 mod svg;
 #[cfg(any(feature = "cityjson", feature = "gltf", feature = "json"))]
@@ -45,14 +53,15 @@ pub use contour_json::{
 pub use error::{Fault, Faults, Place, ReadError};
 #[cfg(feature = "json")]
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
-pub use points::{PointLine, parse_points, read_points};
+pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
+pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
 pub use svg::{SvgOptions, write_svg};
 pub use visible_obj::{fragment_groups, visible_groups};
 
 use crate::scene::{Repair, Scene};
 use formats::Format;
-use std::fs;
-use std::io::{Error, Result as IoResult};
+use std::fs::{self, File};
+use std::io::{Error, Read, Result as IoResult};
 use std::path::{Path, PathBuf};
 
 /// A scene that was read, and what the reader made do with.
@@ -90,12 +99,20 @@ pub enum Origin {
     Integers,
 }
 
-/// The bytes of a regular file. A device or a pipe may never end.
+/// The bytes of a regular file.
 fn read_regular(path: &Path) -> IoResult<Vec<u8>> {
+    let mut file = open_regular(path)?;
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// Opens a regular file. A device or a pipe may never end.
+fn open_regular(path: &Path) -> IoResult<File> {
     if !fs::metadata(path)?.is_file() {
         return Err(Error::other("it is not a regular file; name one, or copy it into one"));
     }
-    fs::read(path)
+    File::open(path)
 }
 
 /// Reads a scene from a file. Its ending decides the format, in upper or lower case; if that is not known, its content

@@ -85,3 +85,16 @@ pub(crate) fn build_order(path: &Path, scene: &Scene, order: &Order, way: Way) -
         }
     }
 }
+
+/// Refuses an epsilon where there is no 3D BSP.
+pub(crate) fn check_way(chosen: Option<Way>, order: &Order) -> Result<(), Failure> {
+    if chosen == Some(Way::Boxes) && order.epsilon > 0.0 {
+        return Err(Failure::Usage("--epsilon is for the 3D BSP; leave it out, or take --way bsp".to_owned()));
+    }
+    Ok(())
+}
+
+/// The way that was chosen, or the one that goes with the epsilon.
+pub(crate) fn way(chosen: Option<Way>, order: &Order) -> Way {
+    chosen.unwrap_or(if order.epsilon > 0.0 { Way::Bsp } else { Way::Boxes })
+}

@@ -8,6 +8,7 @@ mod info;
 mod input;
 mod output;
 mod place;
+mod point_factors;
 mod progress;
 mod proof;
 mod repairs;
@@ -33,6 +34,8 @@ struct Program {
 enum Command {
     Info(info::Info),
     Contour(contour::Contour),
+    #[command(name = "point-factors")]
+    PointFactors(point_factors::PointFactorsOf),
     Compare(compare::Compare),
     Verify(verify::Verify),
     Scene(scene::Scene),
@@ -43,6 +46,7 @@ impl Command {
         match self {
             Self::Info(command) => command.run(common),
             Self::Contour(command) => command.run(common),
+            Self::PointFactors(command) => command.run(common),
             Self::Compare(command) => command.run(common),
             Self::Verify(command) => command.run(common),
             Self::Scene(command) => command.run(common),

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use nusselt::io::{atomic_write, mtl, obj};
 use nusselt::scene::Scene;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
@@ -24,20 +25,57 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     print(&(text + "\n"))
 }
 
+/// Why a file was not written.
+pub(crate) enum Unwritten {
+    /// Writing failed.
+    Io(io::Error),
+    /// What was to be written did.
+    Failed(Failure),
+}
+
+impl From<io::Error> for Unwritten {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl From<Failure> for Unwritten {
+    fn from(failure: Failure) -> Self {
+        Self::Failed(failure)
+    }
+}
+
+impl Unwritten {
+    /// With the name of what could not be written.
+    pub(crate) fn about(self, target: impl Display) -> Failure {
+        match self {
+            Self::Failed(failure) => failure,
+            Self::Io(error) => {
+                let advice = match error.kind() {
+                    ErrorKind::NotFound => "; make its directory first",
+                    ErrorKind::PermissionDenied => "; choose a directory that you may write to",
+                    _ => "",
+                };
+                Failure::Work(format!("cannot write {target}: {error}{advice}"))
+            }
+        }
+    }
+}
+
 /// Writes a file, whole or not at all.
 pub(crate) fn write_file(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), Failure> {
-    let why = |error: io::Error| {
-        let advice = match error.kind() {
-            ErrorKind::NotFound => "; make its directory first",
-            ErrorKind::PermissionDenied => "; choose a directory that you may write to",
-            _ => "",
-        };
-        Failure::Work(format!("cannot write {}: {error}{advice}", path.display()))
-    };
-    atomic_write(path, write).map_err(why)
+    write_results(path, |out| Ok(write(out)?))
+}
+
+/// The same where what is written may fail to be found.
+pub(crate) fn write_results(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> Result<(), Unwritten>,
+) -> Result<(), Failure> {
+    atomic_write(path, write).map_err(|error| error.about(path.display()))
 }
 
 /// The material library beside an OBJ file, and the name by which the OBJ file refers to it.

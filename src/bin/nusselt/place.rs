@@ -1,8 +1,13 @@
 //! Where several commands stand.
 
+use crate::failure::Failure;
 use glam::DVec3;
-use nusselt::contour::{Domain, SurfaceError, Viewpoint};
-use nusselt::scene::Scene;
+use nusselt::contour::{Domain, SurfaceError, SurfaceIndex, Viewpoint};
+use nusselt::io::{PointLine, PointReader, open_points};
+use nusselt::scene::{PieceId, PolygonId, Scene, Side};
+use std::fmt::Display;
+use std::io::Read;
+use std::path::{Path, PathBuf};
 
 /// The hemisphere about a normal: above the polygon that the eye is meant to be on, unless it is to be `free`.
 pub(crate) fn hemisphere(
@@ -12,8 +17,94 @@ pub(crate) fn hemisphere(
     free: bool,
 ) -> Result<(Viewpoint, Domain), SurfaceError> {
     let surface = if free { None } else { Viewpoint::surface_at(scene, eye, normal) };
+    above(scene, eye, normal, surface)
+}
+
+/// On the polygon that the point names, on the side that its normal shows; otherwise where it is meant to be: on one of the surfaces,
+/// unless there are none given.
+pub(crate) fn stand(
+    scene: &Scene,
+    surfaces: Option<&SurfaceIndex>,
+    point: &PointLine,
+) -> Result<(Viewpoint, Domain), SurfaceError> {
+    let PointLine { point: eye, normal, polygon, .. } = *point;
+    match polygon {
+        Some(polygon) => Ok((Viewpoint::on_surface_towards(scene, polygon, normal, eye)?, Domain::Above)),
+        None => above(scene, eye, normal, surfaces.and_then(|surfaces| surfaces.surface_at(eye, normal))),
+    }
+}
+
+fn above(
+    scene: &Scene,
+    eye: DVec3,
+    normal: DVec3,
+    surface: Option<(PieceId, Side)>,
+) -> Result<(Viewpoint, Domain), SurfaceError> {
     match surface {
         Some((piece, side)) => Ok((Viewpoint::on_piece(scene, piece, side, eye)?, Domain::Above)),
         None => Ok((Viewpoint::free(eye), Domain::Hemisphere(normal))),
+    }
+}
+
+/// Points to look from: a file, or `-` for standard input.
+#[derive(Clone, Copy)]
+pub(crate) struct PointsOf<'a> {
+    path: &'a Path,
+}
+
+impl<'a> PointsOf<'a> {
+    pub(crate) fn new(path: &'a Path) -> Self {
+        Self { path }
+    }
+
+    fn is_stdin(self) -> bool {
+        self.path == Path::new("-")
+    }
+
+    /// What messages call it.
+    pub(crate) fn name(self) -> String {
+        if self.is_stdin() { "standard input".to_owned() } else { self.path.display().to_string() }
+    }
+
+    /// The files that it is.
+    pub(crate) fn files(self) -> Vec<PathBuf> {
+        if self.is_stdin() { Vec::new() } else { vec![self.path.to_owned()] }
+    }
+
+    /// Starts reading.
+    pub(crate) fn open(self) -> Result<PointReader<Box<dyn Read>>, Failure> {
+        let reader: Box<dyn Read> = if self.is_stdin() {
+            Box::new(std::io::stdin().lock())
+        } else {
+            Box::new(open_points(self.path).map_err(|error| Failure::Work(error.to_string()))?.into_inner())
+        };
+        Ok(PointReader::new(reader, self.name()))
+    }
+
+    /// Reads a file once to see that it can be used to its end; how many points there are. Of standard input nothing is known before.
+    pub(crate) fn check(self, scene: &Scene) -> Result<Option<usize>, Failure> {
+        if self.is_stdin() {
+            return Ok(None);
+        }
+        let mut reader = self.open()?;
+        let mut points = Vec::new();
+        let mut count = 0;
+        while reader.next(usize::MAX, &mut points).map_err(|error| Failure::Work(error.to_string()))? {
+            count += points.len();
+            for point in &points {
+                let is_there = |polygon: PolygonId| {
+                    polygon.index() < scene.polygon_count() && scene.polygon(polygon).pieces().next().is_some()
+                };
+                if point.polygon.is_some_and(|polygon| !is_there(polygon)) {
+                    stand(scene, None, point).map_err(|error| self.failed_at(point, &error))?;
+                }
+            }
+        }
+        Ok(Some(count))
+    }
+
+    /// What is wrong with a point.
+    pub(crate) fn failed_at(self, point: &PointLine, error: &impl Display) -> Failure {
+        Failure::Work(format!("{}:{}: {error}", self.name(), point.line))
     }
 }

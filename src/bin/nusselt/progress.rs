@@ -6,7 +6,8 @@ use std::time::{Duration, Instant};
 /// Shown if stderr is a terminal; gone when it is dropped.
 pub(crate) struct Progress {
     what: &'static str,
-    total: usize,
+    /// `None` if it is not known.
+    total: Option<usize>,
     done: usize,
     start: Instant,
     shown: Option<Instant>,
@@ -14,8 +15,8 @@ pub(crate) struct Progress {
 }
 
 impl Progress {
-    /// Of `total` things, called `what`.
-    pub(crate) fn new(what: &'static str, total: usize, quiet: bool) -> Self {
+    /// Of `total` things, if that is known, called `what`.
+    pub(crate) fn new(what: &'static str, total: Option<usize>, quiet: bool) -> Self {
         let is_on = !quiet && stderr().is_terminal();
         Self { what, total, done: 0, start: Instant::now(), shown: None, is_on }
     }
@@ -33,8 +34,11 @@ impl Progress {
 
     fn line(&self, seconds: f64) -> String {
         let rate = self.done as f64 / seconds.max(1e-9);
-        let left = self.total.saturating_sub(self.done) as f64 / rate.max(1e-9);
-        format!("{} of {} {}, {rate:.1}/s, {left:.0} s left", self.done, self.total, self.what)
+        let Some(total) = self.total else {
+            return format!("{} {}, {rate:.1}/s", self.done, self.what);
+        };
+        let left = total.saturating_sub(self.done) as f64 / rate.max(1e-9);
+        format!("{} of {total} {}, {rate:.1}/s, {left:.0} s left", self.done, self.what)
     }
 }
 
@@ -52,10 +56,12 @@ mod tests {
 
     #[test]
     fn a_line_tells_rate_and_time_left() {
-        let mut progress = Progress::new("views", 100, true);
+        let mut progress = Progress::new("views", Some(100), true);
         progress.add(20);
         progress.add(5);
         assert_eq!(progress.line(10.0), "25 of 100 views, 2.5/s, 30 s left");
         assert!(progress.shown.is_none(), "quiet");
+        progress.total = None;
+        assert_eq!(progress.line(10.0), "25 views, 2.5/s");
     }
 }

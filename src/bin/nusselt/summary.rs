@@ -16,22 +16,26 @@ pub(crate) struct Timing {
     /// Around the proof, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) certify_ms: Option<f64>,
-    /// How many threads there were; views are made one after the other.
+    /// How many threads there were. A view is made by one of them.
     pub(crate) threads: usize,
 }
 
 impl Timing {
-    /// Of a command that makes these views, one after the other.
+    /// Of a command that makes these views.
     pub(crate) fn new(load_s: f64, bsp_s: f64, view_ms: &[f64]) -> Self {
         // Not with sum, which is -0 for none.
-        let mean = view_ms.iter().fold(0.0, |sum, ms| sum + ms) / view_ms.len().max(1) as f64;
-        let max = view_ms.iter().copied().fold(0.0, f64::max);
+        let sum = view_ms.iter().fold(0.0, |sum, ms| sum + ms);
+        Self::of_many(load_s, bsp_s, view_ms.len(), sum, view_ms.iter().copied().fold(0.0, f64::max))
+    }
+
+    /// The same by the sum and the largest of their times.
+    pub(crate) fn of_many(load_s: f64, bsp_s: f64, views: usize, sum_ms: f64, max_ms: f64) -> Self {
         Self {
             load_s,
             bsp_s,
-            views: view_ms.len(),
-            view_ms_mean: mean,
-            view_ms_max: max,
+            views,
+            view_ms_mean: sum_ms / views.max(1) as f64,
+            view_ms_max: max_ms,
             certify_ms: None,
             threads: rayon::current_num_threads(),
         }

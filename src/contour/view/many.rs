@@ -18,6 +18,28 @@ pub struct ViewsError {
     pub source: ViewError,
 }
 
+/// Memory for views that threads share: each takes a [`ViewSpace`] and puts it back. There are as many as threads have needed at a time.
+#[derive(Debug, Default)]
+pub struct ViewSpaces(Mutex<Vec<ViewSpace>>);
+
+impl ViewSpaces {
+    /// None yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Does something with a space that nothing else uses meanwhile.
+    pub fn with<T>(&self, f: impl FnOnce(&mut ViewSpace) -> T) -> T {
+        // A space is only ever taken or put back whole.
+        let free = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let taken = free().pop();
+        let mut space = taken.unwrap_or_default();
+        let result = f(&mut space);
+        free().push(space);
+        result
+    }
+}
+
 impl SceneOrder {
     /// Takes a view from every viewpoint and gives, in their order, what `of_image` makes of each, which is passed the place in the
     /// list too. With the feature `parallel` the threads of the current `rayon` pool share the work; what comes out does not depend on
@@ -47,15 +69,13 @@ impl SceneOrder {
         options: &ViewOptions,
         of_image: impl Fn(usize, &ContourImage) -> T + Sync + Send,
     ) -> Result<Vec<T>, ViewsError> {
-        let spaces: Mutex<Vec<ViewSpace>> = Mutex::new(Vec::new());
+        let spaces = ViewSpaces::new();
         let view = |index: usize| {
             let (viewpoint, domain) = &viewpoints[index];
-            // A space is only ever taken or put back whole.
-            let free = || spaces.lock().unwrap_or_else(PoisonError::into_inner);
-            let mut space = free().pop().unwrap_or_default();
-            let image = self.view_in(&mut space, viewpoint, domain, options);
-            let result = image.map(|image| of_image(index, image));
-            free().push(space);
+            let result = spaces.with(|space| {
+                let image = self.view_in(space, viewpoint, domain, options)?;
+                Ok(of_image(index, image))
+            });
             result.map_err(|source| ViewsError { index, source })
         };
         parallel::map((0..viewpoints.len()).collect(), view).into_iter().collect()

@@ -6,17 +6,15 @@ use crate::args::{Common, Loading, Order, parse_direction, parse_point};
 use crate::failure::Failure;
 use crate::input::{build, load};
 use crate::output::{print, print_json};
-use crate::place::hemisphere;
+use crate::place::{PointsOf, stand};
 use crate::progress::Progress;
 use glam::DVec3;
-use nusselt::contour::{Domain, SurfaceError, Viewpoint};
+use nusselt::contour::SurfaceIndex;
 use nusselt::hemicube::{BaselineError, CompareError, Hemicube, Method, compare};
-use nusselt::io::{PointLine, parse_points, read_points};
-use nusselt::scene::Scene;
+use nusselt::io::PointLine;
 use std::fmt::Display;
-use std::io::Read;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 const EXAMPLE: &str = "\
 Examples: all methods from every point of a file, whose lines are x y z nx ny nz [polygon]
@@ -91,14 +89,15 @@ impl Compare {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         let points = self.points()?;
         let (scene, load_s) = load(&self.scene, std::iter::empty(), &self.loading, common)?;
+        let surfaces = (!self.free).then(|| SurfaceIndex::new(&scene));
         let views = points.iter().map(|point| {
-            let view = stand(&scene, point, self.free);
+            let view = stand(&scene, surfaces.as_ref(), point);
             view.map_err(|error| self.failed_at(point, &error))
         });
         let views = views.collect::<Result<Vec<_>, _>>()?;
         let (bsp, bsp_s) = build(&self.scene, &scene, &self.order)?;
         let methods = self.methods();
-        let mut progress = Progress::new("views", views.len() * methods.len() * self.rounds.get(), common.quiet);
+        let mut progress = Progress::new("views", Some(views.len() * methods.len() * self.rounds.get()), common.quiet);
         let rows = compare(&bsp, &views, &methods, self.rounds, |count| progress.add(count));
         drop(progress);
         let rows = rows.map_err(|error| match &error {
@@ -128,7 +127,7 @@ impl Compare {
     /// Where to look from.
     fn points(&self) -> Result<Vec<PointLine>, Failure> {
         match (&self.points, self.eye, self.normal) {
-            (Some(path), ..) => read(path),
+            (Some(path), ..) => read(PointsOf::new(path)),
             (None, Some(point), Some(normal)) => Ok(vec![PointLine { line: 1, point, normal, polygon: None }]),
             _ => Err(Failure::Usage("give --points, or --eye and --normal".to_owned())),
         }
@@ -137,42 +136,23 @@ impl Compare {
     /// Names the line of a point, or the scene for `--eye`.
     fn failed_at(&self, point: &PointLine, error: &impl Display) -> Failure {
         match &self.points {
-            Some(path) => Failure::Work(format!("{}:{}: {error}", shown(path), point.line)),
+            Some(path) => PointsOf::new(path).failed_at(point, error),
             None => Failure::about(&self.scene, error),
         }
     }
 }
 
-/// On the polygon that the point names, on the side that its normal shows; otherwise where it is meant to be.
-fn stand(scene: &Scene, point: &PointLine, free: bool) -> Result<(Viewpoint, Domain), SurfaceError> {
-    match point.polygon {
-        Some(polygon) => {
-            let viewpoint = Viewpoint::on_surface_towards(scene, polygon, point.normal, point.point)?;
-            Ok((viewpoint, Domain::Above))
+/// So many points are taken: all of them are looked from before anything is said.
+const MOST_POINTS: usize = 10_000_000;
+
+fn read(points: PointsOf<'_>) -> Result<Vec<PointLine>, Failure> {
+    let mut reader = points.open()?;
+    let (mut all, mut some) = (Vec::new(), Vec::new());
+    while reader.next(usize::MAX, &mut some).map_err(|error| Failure::Work(error.to_string()))? {
+        all.append(&mut some);
+        if all.len() > MOST_POINTS {
+            return Err(Failure::Work(format!("{}: more than {MOST_POINTS} points; split it", points.name())));
         }
-        None => hemisphere(scene, point.point, point.normal, free),
     }
-}
-
-/// What a file of points is called.
-fn shown(path: &Path) -> String {
-    if path == Path::new("-") { "standard input".to_owned() } else { path.display().to_string() }
-}
-
-/// Standard input may never end: no more than this is taken.
-const MOST_BYTES: u64 = 1 << 30;
-
-fn read(path: &Path) -> Result<Vec<PointLine>, Failure> {
-    let points = if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        let taken = std::io::stdin().lock().take(MOST_BYTES + 1).read_to_end(&mut bytes);
-        taken.map_err(|error| Failure::Work(format!("cannot read standard input: {error}")))?;
-        if bytes.len() as u64 > MOST_BYTES {
-            return Err(Failure::Work("standard input: more than a gigabyte of points; split it".to_owned()));
-        }
-        parse_points(&bytes, &shown(path))
-    } else {
-        read_points(path)
-    };
-    points.map_err(|error| Failure::Work(error.to_string()))
+    Ok(all)
 }

@@ -7,7 +7,7 @@ use crate::args::{
     Common, Loading, Order, Way, parse_arithmetic, parse_aspect, parse_direction, parse_fov, parse_point, parse_surface,
 };
 use crate::failure::Failure;
-use crate::input::{build_order, load};
+use crate::input::{build_order, check_way, load, way};
 use crate::output::{is_same_file, print, print_json, write_file, write_obj, written};
 use crate::proof::{Proof, failed_image};
 use crate::summary::Timing;
@@ -160,7 +160,7 @@ impl Contour {
         let outputs = self.output.iter().map(|output| &output.path).chain(&self.certificate).map(PathBuf::as_path);
         let (scene, load_s) = load(&self.scene, outputs, &self.loading, common)?;
         let (viewpoint, domain) = self.stand(&scene, camera)?;
-        let (order, order_s) = build_order(&self.scene, &scene, &self.order, self.way())?;
+        let (order, order_s) = build_order(&self.scene, &scene, &self.order, way(self.way, &self.order))?;
         let start = Instant::now();
         let options = ViewOptions { quadtree_depth: self.quadtree_depth, ..ViewOptions::default() };
         let image =
@@ -222,14 +222,8 @@ impl Contour {
         if !has_horizon && projection == Projection::Nusselt {
             return usage(format!("--projection: {}", nusselt::contour::ProjectionError::NotAHemisphere));
         }
-        if self.way == Some(Way::Boxes) && self.order.epsilon > 0.0 {
-            return usage("--epsilon is for the 3D BSP; leave it out, or take --way bsp".to_owned());
-        }
+        check_way(self.way, &self.order)?;
         Ok(projection)
-    }
-
-    fn way(&self) -> Way {
-        self.way.unwrap_or(if self.order.epsilon > 0.0 { Way::Bsp } else { Way::Boxes })
     }
 
     /// Proves the image if that is asked for, and keeps the evidence.

@@ -3,12 +3,19 @@
 //! A line holds `x y z nx ny nz [polygon]`, separated by commas or blanks. A first line in which nothing is a number is a header. Empty lines
 //! are skipped, as is what follows a `#` at the start of a line or after a blank.
 
-use super::error::{Faults, Place, ReadError};
-use super::lines::{is_blank, lines};
+mod blocks;
+mod reader;
+
+pub use reader::PointReader;
+
+use super::error::ReadError;
+use super::lines::is_blank;
 use super::number::{parse as parse_number, shown};
-use super::read_regular;
+use super::open_regular;
 use crate::scene::PolygonId;
 use glam::DVec3;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// A point to look from, with the direction that is up there.
@@ -29,8 +36,16 @@ pub struct PointLine {
 /// # Errors
 /// If the file cannot be read, is not a regular one, or as [`parse_points`].
 pub fn read_points(path: &Path) -> Result<Vec<PointLine>, ReadError> {
-    let bytes = read_regular(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
-    parse_points(&bytes, &path.to_string_lossy())
+    all(open_points(path)?)
+}
+
+/// Opens a file of points, to be read a few at a time.
+///
+/// # Errors
+/// If the file cannot be opened, or is not a regular one.
+pub fn open_points(path: &Path) -> Result<PointReader<File>, ReadError> {
+    let file = open_regular(path).map_err(|source| ReadError::Io { path: path.to_owned(), source })?;
+    Ok(PointReader::new(file, path.to_string_lossy()))
 }
 
 /// Reads points from the bytes of a file. `name` is what messages call it. Takes any bytes.
@@ -46,29 +61,33 @@ pub fn read_points(path: &Path) -> Result<Vec<PointLine>, ReadError> {
 /// # Errors
 /// [`ReadError::Invalid`] with everything that is wrong; also if there is no point.
 pub fn parse_points(bytes: &[u8], name: &str) -> Result<Vec<PointLine>, ReadError> {
-    let mut faults = Faults::default();
-    let mut points = Vec::new();
-    for (k, line) in lines(bytes).enumerate() {
-        let mut fields = Vec::new();
-        for part in line.text.split(',') {
-            let before = fields.len();
-            fields.extend(part.split(is_blank).filter(|field| !field.is_empty()));
-            if fields.len() == before {
-                fields.push("");
-            }
-        }
-        if k == 0 && fields.iter().all(|field| field.parse::<f64>().is_err()) {
-            continue;
-        }
-        match point(line.number, &fields) {
-            Ok(point) => points.push(point),
-            Err(what) => faults.note(name, Place::Line(line.number), what),
+    all(PointReader::new(bytes, name))
+}
+
+fn all<R: Read>(mut reader: PointReader<R>) -> Result<Vec<PointLine>, ReadError> {
+    let (mut all, mut some) = (Vec::new(), Vec::new());
+    while reader.next(usize::MAX, &mut some)? {
+        all.append(&mut some);
+    }
+    Ok(all)
+}
+
+/// The fields of a line: a comma ends one, and so do blanks.
+fn fields(text: &str) -> Vec<&str> {
+    let mut fields = Vec::new();
+    for part in text.split(',') {
+        let before = fields.len();
+        fields.extend(part.split(is_blank).filter(|field| !field.is_empty()));
+        if fields.len() == before {
+            fields.push("");
         }
     }
-    if points.is_empty() && faults.is_empty() {
-        faults.note(name, Place::File, "it has no points; a line is x y z nx ny nz [polygon]");
-    }
-    if faults.is_empty() { Ok(points) } else { Err(ReadError::Invalid(faults)) }
+    fields
+}
+
+/// True for a first line in which nothing is a number.
+fn is_header(fields: &[&str]) -> bool {
+    fields.iter().all(|field| field.parse::<f64>().is_err())
 }
 
 fn point(line: usize, fields: &[&str]) -> Result<PointLine, String> {
