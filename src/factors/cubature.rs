@@ -68,18 +68,16 @@ impl Rule {
     }
 }
 
-/// An estimate of a rule's error from what rules of lower degrees give (Berntsen and Espelid, "Error estimation in automatic quadrature routines", 1991).
+/// An estimate of a rule's error from what rules of lower degrees give (after Berntsen and Espelid, "Error estimation in automatic quadrature routines", 1991).
 ///
-/// Where the differences fall off from degree to degree the integrand is smooth, and the smallest difference is more than the error. Where they do not, it has a kink, all rules
-/// are about equally wrong, and their differences are of the size of the error but may be small by chance: twice the largest is taken.
+/// Where the differences fall off steeply from degree to degree the integrand is smooth, and a part of the larger ones is much more than the
+/// error. Where they do not, it has a kink: all rules are about equally wrong, and one of their differences may be small by chance, along the whole of an edge's
+/// shadow, but hardly two of them.
 fn estimate([value, fifth, third, other]: [f64; 4]) -> f64 {
     let near = (value - fifth).abs();
     let far = (value - third).abs().max((value - other).abs());
-    if near <= SMOOTH * far { near } else { 2.0 * near.max(far) }
+    if near <= 0.02 * far { 0.1 * far } else { (2.0 * near).max(far) }
 }
-
-/// Differences that fall off to this part are those of a smooth integrand.
-const SMOOTH: f64 = 0.1;
 
 /// A quadrilateral with its integrals.
 struct Region {
