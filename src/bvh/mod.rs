@@ -14,7 +14,7 @@ use crate::bsp::{Bounds, PointId, Skeleton};
 use crate::scene::{PieceId, PieceRef, Scene, Side, VertexId};
 use glam::DVec3;
 use panels::Panels;
-pub(crate) use panels::{Panel, vertex};
+pub(crate) use panels::{Panel, Parts, vertex};
 use solids::Solids;
 use std::ops::Range;
 use std::sync::Arc;

@@ -3,6 +3,7 @@
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use crate::bsp::Skeleton;
 use crate::exact::Sign;
+use std::ops::Range;
 
 /// A great circle with a side: the inside of a polygon that it bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,6 +33,42 @@ pub(crate) struct PolygonArc {
     pub(crate) along: HalfSphere,
 }
 
+/// Where the sides of a polygon are kept among those of others.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Span {
+    start: u32,
+    len: u32,
+}
+
+impl Span {
+    /// All that is kept from a place on.
+    pub(crate) fn from(start: usize, arcs: &[PolygonArc]) -> Self {
+        Self { start: start as u32, len: (arcs.len() - start) as u32 }
+    }
+
+    /// Keeps a polygon after all others.
+    pub(crate) fn keep(polygon: &[PolygonArc], arcs: &mut Vec<PolygonArc>) -> Self {
+        let start = arcs.len();
+        arcs.extend_from_slice(polygon);
+        Self::from(start, arcs)
+    }
+
+    /// Keeps a polygon in the place of this one, if that is large enough.
+    pub(crate) fn replace(self, polygon: &[PolygonArc], arcs: &mut Vec<PolygonArc>) -> Self {
+        if polygon.len() > self.len as usize {
+            return Self::keep(polygon, arcs);
+        }
+        let replaced = Self { len: polygon.len() as u32, ..self };
+        arcs[replaced.range()].copy_from_slice(polygon);
+        replaced
+    }
+
+    #[inline]
+    pub(crate) fn range(self) -> Range<usize> {
+        self.start as usize..(self.start + self.len) as usize
+    }
+}
+
 /// On which sides of a great circle a polygon has corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Sides {
@@ -42,12 +79,74 @@ pub(crate) struct Sides {
 /// Cuts polygons; owns the buffer of signs and the exact numbers of a view.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Knife {
+    corners: Corners,
+    /// The sides of the corners of a polygon that has too many for that.
     signs: Vec<Sign>,
     pub(crate) cache: ExactCache,
 }
 
+/// The most corners that have a bit each.
+const MOST_CORNERS: usize = 64;
+
+/// The sides of a polygon's corners, a bit for each.
+#[derive(Clone, Copy, Debug, Default)]
+struct Corners {
+    positive: u64,
+    negative: u64,
+}
+
+/// Where the boundary of a polygon goes over to another side of a circle.
+#[derive(Clone, Copy, Debug)]
+struct Passage {
+    /// The corner on the circle, or the last one before it.
+    at: usize,
+    /// The first corner beyond.
+    beyond: usize,
+    is_corner: bool,
+}
+
+impl Passage {
+    /// The first corner that is not on the side before it.
+    fn last(self) -> usize {
+        if self.is_corner { self.at } else { self.beyond }
+    }
+}
+
+impl Corners {
+    /// Where the boundary of a polygon of so many corners, which has some on both sides, becomes negative, and where positive. A convex polygon
+    /// has one of each; `None` if this one has not, or has too many corners.
+    #[inline]
+    fn passages(self, count: usize) -> Option<[Passage; 2]> {
+        let all = u64::MAX >> MOST_CORNERS.checked_sub(count)?;
+        let Self { positive, negative } = self;
+        // Those that follow one of some.
+        let after = |some: u64| (some << 1 | some >> (count - 1)) & all;
+        let zero = all & !(positive | negative);
+        let starts = [negative, positive].map(|side| side & !after(side));
+        if starts.iter().any(|start| !start.is_power_of_two()) || zero & after(zero) != 0 {
+            return None;
+        }
+        Some(starts.map(|start| {
+            let beyond = start.trailing_zeros() as usize;
+            let at = if beyond == 0 { count - 1 } else { beyond - 1 };
+            Passage { at, beyond, is_corner: zero >> at & 1 != 0 }
+        }))
+    }
+}
+
+impl Corners {
+    fn sign(self, corner: usize) -> Sign {
+        match (self.positive >> corner & 1, self.negative >> corner & 1) {
+            (1, _) => Sign::Positive,
+            (_, 1) => Sign::Negative,
+            _ => Sign::Zero,
+        }
+    }
+}
+
 impl Knife {
     /// Finds the side of every corner.
+    #[inline]
     pub(crate) fn classify(
         &mut self,
         skeleton: &Skeleton,
@@ -55,41 +154,114 @@ impl Knife {
         polygon: &[PolygonArc],
         circle: CircleId,
     ) -> Sides {
-        self.signs.clear();
         self.cache.count_calls(polygon.len());
-        let mut sides = Sides { positive: false, negative: false };
-        for arc in polygon {
-            let sign = directions.side(skeleton, arc.from, circle, &mut self.cache);
-            sides.positive |= sign.is_positive();
-            sides.negative |= sign.is_negative();
-            self.signs.push(sign);
+        if polygon.len() > MOST_CORNERS {
+            return self.classify_many(skeleton, directions, polygon, circle);
         }
-        sides
+        let normal = directions.normal(circle);
+        let (mut positive, mut negative, mut known) = (0u64, 0u64, 0u64);
+        let mut bit = 1;
+        for arc in polygon {
+            let (is_positive, is_negative) = directions.approximation(arc.from).dot_sides(normal);
+            positive |= if is_positive { bit } else { 0 };
+            negative |= if is_negative { bit } else { 0 };
+            known |= bit;
+            bit <<= 1;
+        }
+        let mut open = known & !(positive | negative);
+        while open != 0 {
+            let corner = polygon[open.trailing_zeros() as usize].from;
+            let bit = open & open.wrapping_neg();
+            match directions.undecided_side_of(skeleton, corner, circle, &mut self.cache) {
+                Sign::Positive => positive |= bit,
+                Sign::Negative => negative |= bit,
+                Sign::Zero => {}
+            }
+            open ^= bit;
+        }
+        self.corners = Corners { positive, negative };
+        Sides { positive: positive != 0, negative: negative != 0 }
     }
 
-    /// Cuts a polygon, classified last, whose corners lie on both sides. `known` may name the
-    /// direction in which an arc of the polygon crosses the circle, if there is one already.
-    #[allow(clippy::too_many_arguments, reason = "the parts of a view are borrowed apart")]
+    #[cold]
+    fn classify_many(
+        &mut self,
+        skeleton: &Skeleton,
+        directions: &Directions,
+        polygon: &[PolygonArc],
+        circle: CircleId,
+    ) -> Sides {
+        self.signs.clear();
+        self.signs.extend(polygon.iter().map(|arc| directions.side(skeleton, arc.from, circle, &mut self.cache)));
+        Sides { positive: self.signs.contains(&Sign::Positive), negative: self.signs.contains(&Sign::Negative) }
+    }
+
+    /// Cuts a polygon, classified last, whose corners lie on both sides: its negative and its positive part, which are kept after all
+    /// others. `known` may name the direction in which an arc of the polygon crosses the circle, if there is one already.
+    #[inline]
     pub(crate) fn cut(
         &mut self,
         skeleton: &Skeleton,
         directions: &mut Directions,
-        polygon: &[PolygonArc],
+        arcs: &mut Vec<PolygonArc>,
+        polygon: Span,
         circle: CircleId,
         mut known: impl FnMut(&mut Directions, &mut ExactCache, PolygonArc) -> Option<DirectionId>,
-        negative: &mut Vec<PolygonArc>,
-        positive: &mut Vec<PolygonArc>,
-    ) {
+    ) -> [Span; 2] {
+        let count = polygon.len as usize;
+        let Some([down, up]) = self.corners.passages(count) else {
+            return self.cut_any(skeleton, directions, arcs, polygon, circle, known);
+        };
+        let mut end = |passage: Passage, arc: PolygonArc, here: Sign| {
+            if passage.is_corner {
+                // It belongs to both parts.
+                return arc.from;
+            }
+            let known = known(directions, &mut self.cache, arc);
+            known.unwrap_or_else(|| cross(skeleton, directions, &mut self.cache, arc, here, circle))
+        };
+        let first = polygon.start as usize;
+        let [arc_down, arc_up] = [arcs[first + down.at], arcs[first + up.at]];
+        let (from_down, from_up) = (end(down, arc_down, Sign::Positive), end(up, arc_up, Sign::Negative));
+        let start = arcs.len();
+        arcs.reserve(count + 4);
+        arcs.push(PolygonArc { from: from_down, along: arc_down.along });
+        copy_run(arcs, first, count, down.beyond, up.last());
+        // Where the boundary leaves a part, that part goes on along the circle.
+        arcs.push(PolygonArc { from: from_up, along: HalfSphere::new(circle, Sign::Negative) });
+        let middle = arcs.len();
+        arcs.push(PolygonArc { from: from_up, along: arc_up.along });
+        copy_run(arcs, first, count, up.beyond, down.last());
+        arcs.push(PolygonArc { from: from_down, along: HalfSphere::new(circle, Sign::Positive) });
+        [Span { start: start as u32, len: (middle - start) as u32 }, Span::from(middle, arcs)]
+    }
+
+    /// The same for a polygon of any number of corners, some of which may be in one place.
+    #[cold]
+    fn cut_any(
+        &mut self,
+        skeleton: &Skeleton,
+        directions: &mut Directions,
+        arcs: &mut Vec<PolygonArc>,
+        polygon: Span,
+        circle: CircleId,
+        mut known: impl FnMut(&mut Directions, &mut ExactCache, PolygonArc) -> Option<DirectionId>,
+    ) -> [Span; 2] {
+        let count = polygon.len as usize;
+        if count <= MOST_CORNERS {
+            self.signs.clear();
+            self.signs.extend((0..count).map(|k| self.corners.sign(k)));
+        }
         let along_positive = HalfSphere::new(circle, Sign::Positive);
         let along_negative = HalfSphere::new(circle, Sign::Negative);
-        for (k, &arc) in polygon.iter().enumerate() {
+        let (mut negative, mut positive) = (Vec::new(), Vec::new());
+        for (k, &arc) in arcs[polygon.range()].iter().enumerate() {
             let here = self.signs[k];
-            let there = self.signs[if k + 1 == polygon.len() { 0 } else { k + 1 }];
+            let there = self.signs[if k + 1 == count { 0 } else { k + 1 }];
             match here {
                 Sign::Positive => positive.push(arc),
                 Sign::Negative => negative.push(arc),
-                // A corner on the circle belongs to both parts. Where the boundary leaves a part,
-                // that part goes on along the circle.
+                // A corner on the circle belongs to both parts.
                 Sign::Zero => {
                     let start = |along| PolygonArc { from: arc.from, along };
                     positive.push(if there.is_positive() { arc } else { start(along_positive) });
@@ -97,12 +269,8 @@ impl Knife {
                 }
             }
             if here * there == Sign::Negative {
-                // The boundary turns about the inward normal n of the arc; going from the positive
-                // to the negative side of t it meets t at n x t, the other way at t x n.
-                let from = known(directions, &mut self.cache, arc).unwrap_or_else(|| {
-                    let reversed = arc.along.inside() * here == Sign::Negative;
-                    directions.push_crossing(skeleton, [arc.along.circle(), circle], reversed, &mut self.cache)
-                });
+                let from = known(directions, &mut self.cache, arc)
+                    .unwrap_or_else(|| cross(skeleton, directions, &mut self.cache, arc, here, circle));
                 let rest = PolygonArc { from, along: arc.along };
                 if here.is_positive() {
                     positive.push(PolygonArc { from, along: along_positive });
@@ -113,5 +281,31 @@ impl Knife {
                 }
             }
         }
+        [&negative, &positive].map(|part| Span::keep(part, arcs))
     }
+}
+
+/// Copies corners of a polygon that starts at `first`, from number `k` up to `last`, to the end.
+#[inline]
+fn copy_run(arcs: &mut Vec<PolygonArc>, first: usize, count: usize, mut k: usize, last: usize) {
+    while k != last {
+        arcs.push(arcs[first + k]);
+        k = if k + 1 == count { 0 } else { k + 1 };
+    }
+}
+
+/// Where an arc that starts on the side `here` of a circle meets it.
+#[inline]
+fn cross(
+    skeleton: &Skeleton,
+    directions: &mut Directions,
+    cache: &mut ExactCache,
+    arc: PolygonArc,
+    here: Sign,
+    circle: CircleId,
+) -> DirectionId {
+    // The boundary turns about the inward normal n of the arc; going from the positive
+    // to the negative side of t it meets t at n x t, the other way at t x n.
+    let reversed = arc.along.inside() != here;
+    directions.push_crossing(skeleton, [arc.along.circle(), circle], reversed, cache)
 }

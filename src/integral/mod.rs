@@ -7,9 +7,11 @@
 
 mod flux;
 mod form_factor;
+mod receiver;
 mod solid_angle;
 mod sums;
 mod unit;
+mod visible;
 
 #[cfg(test)]
 mod tests;

@@ -1,9 +1,10 @@
 //! Solid angles and form factors of what a contour image shows.
 
-use super::form_factor::form_factor_of_rounded;
-use super::{UnitDirection, solid_angle};
+use super::receiver::Receiver;
+use super::solid_angle;
+use super::visible::Visible;
 use crate::contour::{Cell, ContourImage, VisibleRegion};
-use crate::scene::{ObjectId, PolygonId, Scene, Side};
+use crate::scene::{ObjectId, PlaneId, PolygonId, Scene, Side};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -59,41 +60,61 @@ impl Sums {
 impl ContourImage {
     /// The solid angle in which each polygon is seen, in steradians; they sum to that of the domain.
     pub fn solid_angles(&self) -> Sums {
-        self.sums(solid_angle)
+        let mut corners = Vec::new();
+        self.sums(|cell| {
+            corners.clear();
+            corners.extend(cell.boundary());
+            solid_angle(&corners)
+        })
     }
 
     /// The form factor from the viewpoint (a differential element with the domain's normal) to each
     /// polygon: the share of diffusely emitted energy that arrives there. They sum to 1 with the
     /// background. `None` if the domain has no normal.
     pub fn form_factors(&self) -> Option<Sums> {
-        let normal = self.normal()?;
-        let normal = UnitDirection::new(normal)?;
-        Some(self.sums(|corners| form_factor_of_rounded(corners, normal)))
+        let receiver = Receiver::new(self.normal()?);
+        // Each direction is a corner of several cells.
+        let turned: Vec<DVec3> = self.directions().map(|direction| receiver.turned(direction)).collect();
+        let mut corners = Vec::new();
+        Some(self.sums(|cell| {
+            corners.clear();
+            corners.extend(cell.corners().map(|corner| turned[corner]));
+            corners.push(corners[0]);
+            Receiver::factor(&corners)
+        }))
     }
 
-    fn sums(&self, measure: impl Fn(&[DVec3]) -> f64) -> Sums {
-        // A place for every polygon: the cells of one are added in their order.
-        let mut places = vec![None; self.scene().polygon_count()];
-        let mut sums = Vec::new();
+    fn sums(&self, mut measure: impl FnMut(Cell<'_>) -> f64) -> Sums {
+        let mut visible = Visible::none(self.scene().polygon_count());
+        let mut seen = Vec::with_capacity(self.cell_count());
         let mut background = 0.0;
-        let mut corners = Vec::new();
+        // Cells that follow each other are mostly of one plane.
+        let mut last: Option<(PlaneId, bool)> = None;
         for cell in self.cells() {
-            corners.clear();
-            corners.extend(cell.boundary());
-            let value = measure(&corners);
-            let (Some(polygon), Some(side)) = (cell.polygon(), cell.side()) else {
+            let value = measure(cell);
+            let Some(piece) = cell.piece() else {
                 background += value;
                 continue;
             };
-            let place = *places[polygon.index()].get_or_insert_with(|| {
-                sums.push(PolygonSum { polygon, front: 0.0, back: 0.0 });
-                sums.len() as u32 - 1
-            });
-            let sum = &mut sums[place as usize];
+            let piece = self.scene().piece(piece);
+            let plane = piece.plane_id();
+            let is_above = match last {
+                Some((known, is_above)) if known == plane => is_above,
+                _ => cell.side() == Some(piece.facing()),
+            };
+            last = Some((plane, is_above));
+            visible.insert(piece.polygon());
+            let side = if is_above { piece.facing() } else { piece.facing().opposite() };
+            seen.push((piece.polygon(), side, value));
+        }
+        let mut polygons = Vec::with_capacity(visible.count());
+        polygons.extend(visible.iter().map(|polygon| PolygonSum { polygon, front: 0.0, back: 0.0 }));
+        // The cells of one polygon are added in their order.
+        for (polygon, side, value) in seen {
+            let sum = &mut polygons[visible.place(polygon)];
             *(if side == Side::Front { &mut sum.front } else { &mut sum.back }) += value;
         }
-        sums.sort_unstable_by_key(|sum| sum.polygon);
-        Sums { polygons: sums, background }
+        Sums { polygons, background }
     }
 }
 
@@ -105,8 +126,10 @@ impl Cell<'_> {
 
     /// Its form factor; `None` if the domain has no normal. Never negative.
     pub fn form_factor(self) -> Option<f64> {
-        let normal = UnitDirection::new(self.image().normal()?)?;
-        Some(form_factor_of_rounded(&self.boundary().collect::<Vec<_>>(), normal))
+        let receiver = Receiver::new(self.image().normal()?);
+        let corners: Vec<DVec3> =
+            self.boundary().chain(self.boundary().take(1)).map(|corner| receiver.turned(corner)).collect();
+        Some(Receiver::factor(&corners))
     }
 }
 

@@ -87,7 +87,7 @@ fn half_way(a: &UnitDirection, b: &UnitDirection) -> Option<UnitDirection> {
 }
 
 /// The arcs of an outline, each as its two ends.
-pub(super) fn arcs<V>(outline: &[V]) -> impl Iterator<Item = [&V; 2]> {
+pub(super) fn arcs(outline: &[UnitDirection]) -> impl Iterator<Item = [&UnitDirection; 2]> {
     let next = outline.iter().skip(1).chain(outline.first());
     outline.iter().zip(next).map(|(a, b)| [a, b])
 }
