@@ -258,7 +258,13 @@ impl Directions {
     /// The same where the approximations have been asked already and could not tell.
     #[cold]
     #[inline(never)]
-    pub(crate) fn undecided_side_of(&self, skeleton: &Skeleton, d: DirectionId, c: CircleId, cache: &mut ExactCache) -> Sign {
+    pub(crate) fn undecided_side_of(
+        &self,
+        skeleton: &Skeleton,
+        d: DirectionId,
+        c: CircleId,
+        cache: &mut ExactCache,
+    ) -> Sign {
         self.undecided_side(skeleton, self.definitions[d.0 as usize], c, cache)
     }
 

@@ -53,6 +53,16 @@ impl Span {
         Self::from(start, arcs)
     }
 
+    /// Moves the polygon that was kept last to the place of this one, if that is large enough.
+    pub(crate) fn replace_by_last(self, last: Self, arcs: &mut Vec<PolygonArc>) -> Self {
+        if last.len > self.len {
+            return last;
+        }
+        arcs.copy_within(last.range(), self.start as usize);
+        arcs.truncate(last.start as usize);
+        Self { len: last.len, ..self }
+    }
+
     /// Keeps a polygon in the place of this one, if that is large enough.
     pub(crate) fn replace(self, polygon: &[PolygonArc], arcs: &mut Vec<PolygonArc>) -> Self {
         if polygon.len() > self.len as usize {
@@ -197,7 +207,7 @@ impl Knife {
     }
 
     /// Cuts a polygon, classified last, whose corners lie on both sides: its negative and its positive part, which are kept after all
-    /// others. `known` may name the direction in which an arc of the polygon crosses the circle, if there is one already.
+    /// others, the negative one last. `known` may name the direction in which an arc of the polygon crosses the circle, if there is one already.
     #[inline]
     pub(crate) fn cut(
         &mut self,
@@ -225,15 +235,15 @@ impl Knife {
         let (from_down, from_up) = (end(down, arc_down, Sign::Positive), end(up, arc_up, Sign::Negative));
         let start = arcs.len();
         arcs.reserve(count + 4);
-        arcs.push(PolygonArc { from: from_down, along: arc_down.along });
-        copy_run(arcs, first, count, down.beyond, up.last());
-        // Where the boundary leaves a part, that part goes on along the circle.
-        arcs.push(PolygonArc { from: from_up, along: HalfSphere::new(circle, Sign::Negative) });
-        let middle = arcs.len();
         arcs.push(PolygonArc { from: from_up, along: arc_up.along });
         copy_run(arcs, first, count, up.beyond, down.last());
+        // Where the boundary leaves a part, that part goes on along the circle.
         arcs.push(PolygonArc { from: from_down, along: HalfSphere::new(circle, Sign::Positive) });
-        [Span { start: start as u32, len: (middle - start) as u32 }, Span::from(middle, arcs)]
+        let middle = arcs.len();
+        arcs.push(PolygonArc { from: from_down, along: arc_down.along });
+        copy_run(arcs, first, count, down.beyond, up.last());
+        arcs.push(PolygonArc { from: from_up, along: HalfSphere::new(circle, Sign::Negative) });
+        [Span::from(middle, arcs), Span { start: start as u32, len: (middle - start) as u32 }]
     }
 
     /// The same for a polygon of any number of corners, some of which may be in one place.
@@ -281,7 +291,8 @@ impl Knife {
                 }
             }
         }
-        [&negative, &positive].map(|part| Span::keep(part, arcs))
+        let positive = Span::keep(&positive, arcs);
+        [Span::keep(&negative, arcs), positive]
     }
 }
 

@@ -14,14 +14,45 @@ pub(crate) enum Link {
     Leaf(u32),
 }
 
+impl Link {
+    /// In four bytes: a view has many nodes.
+    #[inline]
+    fn packed(self) -> u32 {
+        match self {
+            Self::Node(node) => node << 1,
+            Self::Leaf(leaf) => leaf << 1 | 1,
+        }
+    }
+
+    #[inline]
+    fn unpacked(packed: u32) -> Self {
+        if packed & 1 == 0 { Self::Node(packed >> 1) } else { Self::Leaf(packed >> 1) }
+    }
+}
+
+/// In place of the number of a node above.
+const NO_PARENT: u32 = u32::MAX;
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TreeNode {
     pub(crate) circle: CircleId,
-    pub(crate) negative: Link,
-    pub(crate) positive: Link,
-    parent: Option<u32>,
+    /// The links to what is on its negative and on its positive side.
+    children: [u32; 2],
+    parent: u32,
     /// The greatest of the leaves below.
     far: f64,
+}
+
+impl TreeNode {
+    #[inline]
+    pub(crate) fn negative(&self) -> Link {
+        Link::unpacked(self.children[0])
+    }
+
+    #[inline]
+    pub(crate) fn positive(&self) -> Link {
+        Link::unpacked(self.children[1])
+    }
 }
 
 /// What is known of a leaf.
@@ -42,7 +73,7 @@ pub(crate) struct Leaf {
     /// Nothing that is at least this far from the eye can be seen in it: infinite if it is open.
     far: f64,
     boundary: Span,
-    parent: Option<u32>,
+    parent: u32,
 }
 
 /// The tree of one view, with its great circles and directions.
@@ -124,7 +155,7 @@ impl ContourTree {
             let circles = [planes[(axis + 1) % 3], planes[(axis + 2) % 3]];
             *pole = [false, true].map(|r| directions.push_crossing(skeleton, circles, r, &mut knife.cache));
         }
-        tree.octant_node(planes, poles, &mut Vec::new(), None);
+        tree.octant_node(planes, poles, &mut Vec::new(), NO_PARENT);
         tree
     }
 
@@ -133,7 +164,7 @@ impl ContourTree {
         planes: [CircleId; 3],
         poles: [[DirectionId; 2]; 3],
         signs: &mut Vec<Sign>,
-        parent: Option<u32>,
+        parent: u32,
     ) -> Link {
         if let &[x, y, z] = signs.as_slice() {
             let corner = |axis: usize| poles[axis][usize::from(signs[axis].is_negative())];
@@ -147,20 +178,19 @@ impl ContourTree {
             return self.push_leaf(&arcs, parent);
         }
         let node = self.nodes.len() as u32;
-        let unset = Link::Leaf(u32::MAX);
         let circle = planes[signs.len()];
-        self.nodes.push(TreeNode { circle, negative: unset, positive: unset, parent, far: f64::INFINITY });
-        let [negative, positive] = [Sign::Negative, Sign::Positive].map(|sign| {
+        self.nodes.push(TreeNode { circle, children: [0; 2], parent, far: f64::INFINITY });
+        let children = [Sign::Negative, Sign::Positive].map(|sign| {
             signs.push(sign);
-            let child = self.octant_node(planes, poles, signs, Some(node));
+            let child = self.octant_node(planes, poles, signs, node);
             signs.pop();
             child
         });
-        (self.nodes[node as usize].negative, self.nodes[node as usize].positive) = (negative, positive);
+        self.nodes[node as usize].children = children.map(Link::packed);
         Link::Node(node)
     }
 
-    fn push_leaf(&mut self, boundary: &[PolygonArc], parent: Option<u32>) -> Link {
+    fn push_leaf(&mut self, boundary: &[PolygonArc], parent: u32) -> Link {
         let boundary = Span::keep(boundary, &mut self.arcs);
         self.leaves.push(Leaf { state: LeafState::Open, far: f64::INFINITY, boundary, parent });
         Link::Leaf(self.leaves.len() as u32 - 1)
@@ -183,28 +213,27 @@ impl ContourTree {
         }
     }
 
-    fn replace(&mut self, parent: Option<u32>, old: Link, new: Link) {
-        match parent {
-            None => self.root = new,
-            Some(parent) => {
-                let node = &mut self.nodes[parent as usize];
-                *(if node.negative == old { &mut node.negative } else { &mut node.positive }) = new;
-            }
+    fn replace(&mut self, parent: u32, old: Link, new: Link) {
+        if parent == NO_PARENT {
+            self.root = new;
+            return;
         }
+        let [negative, positive] = &mut self.nodes[parent as usize].children;
+        *(if *negative == old.packed() { negative } else { positive }) = new.packed();
     }
 
     /// Gives a leaf its state and tells the nodes above.
     fn close(&mut self, leaf: u32, state: LeafState, far: f64) {
         let Leaf { parent: mut above, .. } = self.leaves[leaf as usize];
         (self.leaves[leaf as usize].state, self.leaves[leaf as usize].far) = (state, far);
-        while let Some(node) = above {
-            let TreeNode { negative, positive, parent, far, .. } = self.nodes[node as usize];
-            let most = self.link_far(negative).max(self.link_far(positive));
-            if most.total_cmp(&far).is_eq() {
+        while above != NO_PARENT {
+            let node = self.nodes[above as usize];
+            let most = self.link_far(node.negative()).max(self.link_far(node.positive()));
+            if most.total_cmp(&node.far).is_eq() {
                 return;
             }
-            self.nodes[node as usize].far = most;
-            above = parent;
+            self.nodes[above as usize].far = most;
+            above = node.parent;
         }
     }
 
@@ -246,14 +275,15 @@ impl ContourTree {
         }
         let [negative, positive] =
             work.knife.cut(skeleton, &mut self.directions, &mut self.arcs, boundary, half.circle(), known);
+        let negative = boundary.replace_by_last(negative, &mut self.arcs);
         let node = self.nodes.len() as u32;
         self.replace(parent, Link::Leaf(leaf), Link::Node(node));
         // The leaf itself becomes the negative child, so that no leaf is ever out of the tree.
         let other = self.leaves.len() as u32;
-        self.leaves[leaf as usize] = Leaf { state, far, boundary: negative, parent: Some(node) };
-        self.leaves.push(Leaf { state, far, boundary: positive, parent: Some(node) });
-        let (negative, positive) = (Link::Leaf(leaf), Link::Leaf(other));
-        self.nodes.push(TreeNode { circle: half.circle(), negative, positive, parent, far });
+        self.leaves[leaf as usize] = Leaf { state, far, boundary: negative, parent: node };
+        self.leaves.push(Leaf { state, far, boundary: positive, parent: node });
+        let children = [leaf, other].map(|leaf| Link::Leaf(leaf).packed());
+        self.nodes.push(TreeNode { circle: half.circle(), children, parent, far });
         if half.inside().is_positive() { [Some(other), Some(leaf)] } else { [Some(leaf), Some(other)] }
     }
 
@@ -300,7 +330,8 @@ impl ContourTree {
                 }
                 Some(Link::Node(node)) => node,
             };
-            let TreeNode { circle, negative, positive, .. } = self.nodes[node as usize];
+            let node = self.nodes[node as usize];
+            let (circle, negative, positive) = (node.circle, node.negative(), node.positive());
             let sides = &work.arcs[part.range()];
             if let Some(side) = sides.iter().find(|arc| arc.along.circle() == circle) {
                 let child = if side.along.inside().is_positive() { positive } else { negative };
@@ -333,7 +364,7 @@ impl ContourTree {
             }
             *visited += 1;
             match seen.side(self.directions.normal(node.circle)) {
-                Some(side) => link = if side.is_positive() { node.positive } else { node.negative },
+                Some(side) => link = if side.is_positive() { node.positive() } else { node.negative() },
                 None => break,
             }
         }
@@ -351,7 +382,6 @@ impl ContourTree {
     /// of it stays as it is.
     fn fill(&mut self, skeleton: &Skeleton, leaf: u32, polygon: Span, filler: &Filler, work: &mut Workspace) {
         let Leaf { state, far, boundary: place, mut parent } = self.leaves[leaf as usize];
-        let mut here = Link::Leaf(leaf);
         // What is left of the leaf.
         let mut region = place;
         let polygon = &work.arcs[polygon.range()];
@@ -380,18 +410,17 @@ impl ContourTree {
                     None
                 }
             };
-            let [below, above] =
-                work.knife.cut(skeleton, &mut self.directions, &mut self.arcs, region, circle, known);
+            let [below, above] = work.knife.cut(skeleton, &mut self.directions, &mut self.arcs, region, circle, known);
             let (outside, kept) = if inside.is_positive() { (below, above) } else { (above, below) };
             region = kept;
             let node = self.nodes.len() as u32;
-            self.replace(parent, here, Link::Node(node));
-            let outside_leaf = Link::Leaf(self.leaves.len() as u32);
-            self.leaves.push(Leaf { state, far, boundary: outside, parent: Some(node) });
-            here = Link::Leaf(leaf);
-            let (negative, positive) = if inside.is_positive() { (outside_leaf, here) } else { (here, outside_leaf) };
-            self.nodes.push(TreeNode { circle, negative, positive, parent, far });
-            parent = Some(node);
+            self.replace(parent, Link::Leaf(leaf), Link::Node(node));
+            let other = self.leaves.len() as u32;
+            self.leaves.push(Leaf { state, far, boundary: outside, parent: node });
+            let children = if inside.is_positive() { [other, leaf] } else { [leaf, other] };
+            let children = children.map(|leaf| Link::Leaf(leaf).packed());
+            self.nodes.push(TreeNode { circle, children, parent, far });
+            parent = node;
         }
         let filled = &mut self.leaves[leaf as usize];
         filled.boundary = place.replace(polygon, &mut self.arcs);
@@ -417,9 +446,9 @@ impl ContourTree {
             let Link::Node(node) = link else { return false };
             let node = &self.nodes[node as usize];
             match seen.side(self.directions.normal(node.circle)) {
-                Some(Sign::Positive) => work.links.push(node.positive),
-                Some(_) => work.links.push(node.negative),
-                None => work.links.extend([node.negative, node.positive]),
+                Some(Sign::Positive) => work.links.push(node.positive()),
+                Some(_) => work.links.push(node.negative()),
+                None => work.links.extend([node.negative(), node.positive()]),
             }
         }
         true
@@ -433,8 +462,8 @@ impl ContourTree {
         while let Link::Node(number) = link {
             let node = &self.nodes[number as usize];
             let child = match seen.side(self.directions.normal(node.circle)) {
-                Some(Sign::Positive) => node.positive,
-                Some(_) => node.negative,
+                Some(Sign::Positive) => node.positive(),
+                Some(_) => node.negative(),
                 None => break,
             };
             // A leaf may become a node later, and then it is only a part of it.

@@ -103,8 +103,7 @@ impl<'a> Mosaic<'a> {
                 Sides { .. } => {
                     let directions = self.directions.to_mut();
                     let none = |_: &mut _, _: &mut _, _| None;
-                    let parts =
-                        self.knife.cut(self.skeleton, directions, &mut self.arcs, face.boundary, circle, none);
+                    let parts = self.knife.cut(self.skeleton, directions, &mut self.arcs, face.boundary, circle, none);
                     let [mut below, mut above] = parts.map(|boundary| Face { boundary, ..face });
                     mark(&mut below, Sign::Negative);
                     mark(&mut above, Sign::Positive);
