@@ -87,7 +87,7 @@ impl Halves {
 /// All panels: those of one piece first, under the numbers of their pieces.
 #[derive(Clone, Debug)]
 pub(crate) struct Panels {
-    panels: Vec<Panel>,
+    all: Vec<Panel>,
     seams: Vec<Seam>,
     /// Of the lines that are known to be the same it is always the one that stands for them.
     sides: Vec<FragmentSide>,
@@ -101,7 +101,7 @@ impl Panels {
         groups: &[&[PieceId]],
         may_join: impl Fn(PieceId, PieceId) -> bool,
     ) -> (Self, Vec<Vec<u32>>) {
-        let mut panels = Self { panels: Vec::with_capacity(scene.piece_count()), seams: Vec::new(), sides: Vec::new() };
+        let mut panels = Self { all: Vec::with_capacity(scene.piece_count()), seams: Vec::new(), sides: Vec::new() };
         for piece in scene.pieces() {
             let sides = whole_piece(scene, piece.id()).map(|side| {
                 let (line, same_way) = skeleton.representative(side.line);
@@ -132,8 +132,8 @@ impl Panels {
         self.sides.extend(sides);
         let pieces = halves.map_or(1, |halves| halves.panels.map(|half| self.panel(half).pieces).iter().sum());
         let sides = start..self.sides.len() as u32;
-        self.panels.push(Panel { piece, parts: Parts::One(piece), bounds, halves, sides, pieces });
-        self.panels.len() as u32 - 1
+        self.all.push(Panel { piece, parts: Parts::One(piece), bounds, halves, sides, pieces });
+        self.all.len() as u32 - 1
     }
 
     /// Lays the seams of a panel one after the other.
@@ -144,7 +144,7 @@ impl Panels {
             self.seams.push(Seam { halves, side: seam, ends });
             // No deeper than a panel has pieces.
             self.seams[number as usize].halves = panels.map(|half| self.lay_seams(half));
-            self.panels[panel as usize].parts = Parts::Two(number);
+            self.all[panel as usize].parts = Parts::Two(number);
         }
         self.panel(panel).parts
     }
@@ -154,7 +154,7 @@ impl Panels {
     }
 
     pub(crate) fn panel(&self, panel: u32) -> &Panel {
-        &self.panels[panel as usize]
+        &self.all[panel as usize]
     }
 
     /// The boundary of a panel.

@@ -320,3 +320,92 @@ fn cross(
     let reversed = arc.along.inside() != here;
     directions.push_crossing(skeleton, [arc.along.circle(), circle], reversed, cache)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bvh::SceneBvh;
+    use crate::scene::{Material, Scene};
+    use glam::DVec3;
+    use std::f64::consts::TAU;
+
+    type Corner = ([u64; 3], HalfSphere);
+
+    /// The parts of a regular polygon around z, cut by a plane: fast where that is possible, and in the way that takes any polygon.
+    fn parts(count: usize, normal: DVec3) -> [[Vec<Corner>; 2]; 2] {
+        let corners = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+        let scene = Scene::builder().mesh(&corners, &[vec![0, 1, 2]], Material::new("grey")).build().expect("a scene");
+        let bvh = SceneBvh::build(&scene);
+        let skeleton = &bvh.hierarchy.skeleton;
+        let mut knife = Knife::default();
+        let mut directions = Directions::new(skeleton, DVec3::ZERO, None);
+        let sides: Vec<CircleId> = (0..count)
+            .map(|k| TAU * k as f64 / count as f64)
+            .map(|angle| DVec3::new(-angle.cos(), -angle.sin(), 1.0))
+            .map(|inwards| if count == 4 { inwards.round() } else { inwards })
+            .map(|inwards| directions.push_given(skeleton, inwards, &mut knife.cache))
+            .collect();
+        let arcs = (0..count).map(|k| {
+            let meeting = [sides[(k + count - 1) % count], sides[k]];
+            let from = directions.push_crossing(skeleton, meeting, false, &mut knife.cache);
+            PolygonArc { from, along: HalfSphere::new(sides[k], Sign::Positive) }
+        });
+        let mut arcs: Vec<PolygonArc> = arcs.collect();
+        let polygon = Span::from(0, &arcs);
+        let circle = directions.push_given(skeleton, normal, &mut knife.cache);
+        let found = knife.classify(skeleton, &directions, &arcs, circle);
+        assert_eq!(found, Sides { positive: true, negative: true });
+        let none = |_: &mut Directions, _: &mut ExactCache, _| None;
+        let fast = knife.cut(skeleton, &mut directions, &mut arcs, polygon, circle, none);
+        let any = knife.cut_any(skeleton, &mut directions, &mut arcs, polygon, circle, none);
+        for (part, sign) in fast.into_iter().zip([Sign::Negative, Sign::Positive]) {
+            let here = knife.classify(skeleton, &directions, &arcs[part.range()], circle);
+            assert_eq!(here, Sides { positive: sign.is_positive(), negative: sign.is_negative() });
+        }
+        [fast, any].map(|parts| {
+            parts.map(|part| {
+                let corner =
+                    |arc: &PolygonArc| (directions.approximation(arc.from).v.to_array().map(f64::to_bits), arc.along);
+                let mut corners: Vec<Corner> = arcs[part.range()].iter().map(corner).collect();
+                // From the one side that all parts have.
+                let cut = corners.iter().position(|corner| corner.1.circle() == circle).expect("a side along the cut");
+                corners.rotate_left(cut);
+                corners
+            })
+        })
+    }
+
+    #[test]
+    fn both_ways_to_cut_give_the_same_parts() {
+        let normals = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 0.3], [0.1, -1.0, -0.05]];
+        for count in [3, 4, 5, 7, 63, 64, 65, 100] {
+            for normal in normals.map(DVec3::from) {
+                let [fast, any] = parts(count, normal);
+                assert_eq!(fast, any, "{count} {normal}");
+                // Two ends of the cut, each in both parts, are new corners or old ones.
+                let new = fast.iter().map(Vec::len).sum::<usize>() - count;
+                assert!((2..=4).contains(&new), "{count} {normal}: {new}");
+            }
+        }
+        // From corner to corner of a square.
+        assert_eq!(parts(4, DVec3::new(1.0, 1.0, 0.0))[0].each_ref().map(Vec::len), [3, 3]);
+    }
+
+    #[test]
+    fn passages_are_found_where_a_convex_polygon_has_them() {
+        let corners = |signs: &str| {
+            let bits = |sign| signs.bytes().enumerate().filter(|&(_, s)| s == sign).map(|(k, _)| 1 << k).sum();
+            Corners { positive: bits(b'+'), negative: bits(b'-') }.passages(signs.len())
+        };
+        let told = |signs: &str| corners(signs).map(|both| both.map(|p| (p.at, p.beyond, p.is_corner)));
+        assert_eq!(told("++--"), Some([(1, 2, false), (3, 0, false)]));
+        assert_eq!(told("-+"), Some([(1, 0, false), (0, 1, false)]));
+        assert_eq!(told("0+0-"), Some([(2, 3, true), (0, 1, true)]));
+        assert_eq!(told("-+++0"), Some([(4, 0, true), (0, 1, false)]));
+        for none in ["+-+-", "+00-", "+-0+-", "++0", "----", "0"] {
+            assert_eq!(told(none), None, "{none}");
+        }
+        assert_eq!(told(&format!("{}-", "+".repeat(63))), Some([(62, 63, false), (63, 0, false)]));
+        assert!(Corners { positive: 1, negative: 2 }.passages(65).is_none());
+    }
+}

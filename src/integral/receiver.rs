@@ -34,15 +34,15 @@ impl Receiver {
     pub(super) fn factor(ring: &[DVec3]) -> f64 {
         // Most cells are small.
         let (mut double, all) = double_flux(ring, series::<6>);
-        if !(all < SHORT) {
-            double = if all < LONG {
-                double_flux(ring, series::<12>).0
-            } else if ring.windows(2).all(|arc| sine_squared(arc[1] - arc[0]) < 0.49) {
-                double_flux(ring, |h| if h < LONG { series::<12>(h) } else { quotient(h) }).0
-            } else {
-                // Arcs of 90 degrees and more are halved there, and what is no direction is left out.
-                return form_factor(ring, DVec3::Z);
-            };
+        if all < SHORT {
+            // No arc is longer.
+        } else if all < LONG {
+            double = double_flux(ring, series::<12>).0;
+        } else if ring.windows(2).all(|arc| sine_squared(arc[1] - arc[0]) < 0.49) {
+            double = double_flux(ring, |h| if h < LONG { series::<12>(h) } else { quotient(h) }).0;
+        } else {
+            // Arcs of 90 degrees and more are halved there, and what is no direction is left out.
+            return form_factor(ring, DVec3::Z);
         }
         let factor = double / TAU;
         if factor > 0.0 { factor } else { 0.0 }
