@@ -64,7 +64,9 @@ mod tests {
         fn polygons_are_found_at_their_places(numbers in prop::collection::vec(0u32..300, 0..100)) {
             let expected: BTreeSet<u32> = numbers.iter().copied().collect();
             let mut visible = Visible::none(300);
-            numbers.into_iter().for_each(|k| visible.insert(PolygonId(k)));
+            for k in numbers {
+                visible.insert(PolygonId(k));
+            }
             prop_assert_eq!(visible.count(), expected.len());
             let found: Vec<PolygonId> = visible.iter().collect();
             prop_assert!(found.iter().map(|p| p.0).eq(expected));
