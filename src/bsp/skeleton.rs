@@ -60,6 +60,7 @@ pub(crate) struct Skeleton {
     crease_ids: FxHashMap<[PlaneId; 2], LineId>,
     constructed: Vec<PointDef>,
     constructed_ids: FxHashMap<PointDef, PointId>,
+    /// Approximations of constructed points; vertices are exact.
     approx_points: Vec<ApproxPoint>,
     /// Up to four lines that a constructed point is known to lie on.
     incident: Vec<[u32; 4]>,
@@ -110,7 +111,7 @@ impl Skeleton {
             crease_ids: FxHashMap::default(),
             constructed: Vec::new(),
             constructed_ids: FxHashMap::default(),
-            approx_points: scene.vertices().iter().map(|&position| ApproxPoint::exact(position)).collect(),
+            approx_points: Vec::new(),
             incident: Vec::new(),
             frame,
         }
@@ -133,7 +134,7 @@ impl Skeleton {
             crease_ids: FxHashMap::default(),
             constructed: Vec::new(),
             constructed_ids: FxHashMap::default(),
-            approx_points: vertices.iter().map(|&position| ApproxPoint::exact(position)).collect(),
+            approx_points: Vec::new(),
             vertices,
             incident: Vec::new(),
             frame: self.frame,
@@ -244,7 +245,7 @@ impl Skeleton {
     }
 
     pub(crate) fn point_count(&self) -> usize {
-        self.approx_points.len()
+        self.vertices.len() + self.constructed.len()
     }
 
     pub(crate) fn point(&self, id: PointId) -> PointDef {
@@ -273,8 +274,12 @@ impl Skeleton {
         }
     }
 
+    #[inline]
     pub(crate) fn approx_point(&self, id: PointId) -> ApproxPoint {
-        self.approx_points[id.0 as usize]
+        match (id.0 as usize).checked_sub(self.vertices.len()) {
+            None => ApproxPoint::exact(self.vertices[id.0 as usize]),
+            Some(k) => self.approx_points[k],
+        }
     }
 
     /// True if the point is known by identity to lie on the line, which stands for itself; false says
@@ -321,7 +326,7 @@ impl Skeleton {
         // fragment comes to the point first, it is the same, and so are the planes that are chosen by it.
         let interpolated = match def {
             PointDef::EdgePlane(ends, _) => {
-                let [from, to] = ends.map(|v| self.approx_points[v.index()]);
+                let [from, to] = ends.map(|v| ApproxPoint::exact(self.vertex(v)));
                 let cut = &self.approx_planes[plane.index()];
                 let approx = ApproxPoint::between(from, to, cut.height(&from), cut.height(&to));
                 let poor = 1e-13 * (from.position.abs() + to.position.abs());
@@ -351,7 +356,7 @@ impl Skeleton {
 
     /// Adds a constructed point of which the approximation is known.
     pub(super) fn add_constructed(&mut self, def: PointDef, approx: ApproxPoint) -> PointId {
-        let id = PointId(self.approx_points.len() as u32);
+        let id = PointId(self.point_count() as u32);
         self.approx_points.push(approx);
         self.constructed.push(def);
         self.constructed_ids.insert(def, id);

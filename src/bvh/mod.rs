@@ -16,7 +16,7 @@ use crate::bsp::{Bounds, PointId, Skeleton};
 use crate::scene::{PieceId, PieceRef, Scene, Side, VertexId};
 use glam::DVec3;
 use panels::{MOST_PIECES, Panels};
-pub(crate) use panels::{Panel, vertex};
+pub(crate) use panels::{Panel, Parts, vertex};
 pub(crate) use solids::Solid;
 use solids::Solids;
 use std::ops::Range;

@@ -23,8 +23,9 @@ const MOST_SIDES: usize = 16;
 pub(crate) struct Panel {
     /// The piece; of more than one the first, which stands for the plane and the side of all.
     pub(crate) piece: PieceId,
-    pub(crate) halves: Option<Halves>,
+    pub(crate) parts: Parts,
     pub(crate) bounds: Bounds,
+    halves: Option<Halves>,
     sides: Range<u32>,
     pieces: u32,
 }
@@ -35,15 +36,32 @@ impl Panel {
     }
 }
 
-/// How a panel is halved.
+/// What a panel consists of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Parts {
+    One(PieceId),
+    /// What is on both sides of a seam, by the number of that.
+    Two(u32),
+}
+
+/// How a panel is halved. Those of the seams of one panel that are halves of it follow it: a view goes through many of them.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Halves {
-    /// The panels.
-    pub(crate) panels: [u32; 2],
+pub(crate) struct Seam {
+    /// What the halves consist of.
+    pub(crate) halves: [Parts; 2],
     /// What is between them, as a side of the first one.
-    pub(crate) seam: FragmentSide,
+    pub(crate) side: FragmentSide,
     /// The ends of the seam.
     pub(crate) ends: [SeamEnd; 2],
+}
+
+/// How a panel is halved, by the panels that are its halves.
+#[derive(Clone, Copy, Debug)]
+struct Halves {
+    panels: [u32; 2],
+    /// What is between them, as a side of the first one.
+    seam: FragmentSide,
+    ends: [SeamEnd; 2],
 }
 
 /// An end of what is between two halves of a panel.
@@ -69,7 +87,8 @@ impl Halves {
 /// All panels: those of one piece first, under the numbers of their pieces.
 #[derive(Clone, Debug)]
 pub(crate) struct Panels {
-    panels: Vec<Panel>,
+    all: Vec<Panel>,
+    seams: Vec<Seam>,
     /// Of the lines that are known to be the same it is always the one that stands for them.
     sides: Vec<FragmentSide>,
 }
@@ -84,7 +103,7 @@ impl Panels {
         most_pieces: u32,
         may_join: impl Fn(PieceId, PieceId) -> bool,
     ) -> (Self, Vec<Vec<u32>>) {
-        let mut panels = Self { panels: Vec::with_capacity(scene.piece_count()), sides: Vec::new() };
+        let mut panels = Self { all: Vec::with_capacity(scene.piece_count()), seams: Vec::new(), sides: Vec::new() };
         for piece in scene.pieces() {
             let sides = whole_piece(scene, piece.id()).map(|side| {
                 let (line, same_way) = skeleton.representative(side.line);
@@ -102,8 +121,12 @@ impl Panels {
             most_pieces,
             may_join,
         };
-        let roots = groups.iter().map(|pieces| joiner.join(pieces)).collect();
-        (joiner.panels, roots)
+        let roots: Vec<Vec<u32>> = groups.iter().map(|pieces| joiner.join(pieces)).collect();
+        let mut panels = joiner.panels;
+        for &root in roots.iter().flatten() {
+            panels.lay_seams(root);
+        }
+        (panels, roots)
     }
 
     fn push(&mut self, skeleton: &Skeleton, piece: PieceId, halves: Option<Halves>, sides: Vec<FragmentSide>) -> u32 {
@@ -111,12 +134,30 @@ impl Panels {
         let bounds = bounds_of(skeleton, &sides);
         self.sides.extend(sides);
         let pieces = halves.map_or(1, |halves| halves.panels.map(|half| self.panel(half).pieces).iter().sum());
-        self.panels.push(Panel { piece, halves, bounds, sides: start..self.sides.len() as u32, pieces });
-        self.panels.len() as u32 - 1
+        let sides = start..self.sides.len() as u32;
+        self.all.push(Panel { piece, parts: Parts::One(piece), bounds, halves, sides, pieces });
+        self.all.len() as u32 - 1
+    }
+
+    /// Lays the seams of a panel one after the other.
+    fn lay_seams(&mut self, panel: u32) -> Parts {
+        if let Some(Halves { panels, seam, ends }) = self.panel(panel).halves {
+            let number = self.seams.len() as u32;
+            let halves = [Parts::Two(number); 2];
+            self.seams.push(Seam { halves, side: seam, ends });
+            // No deeper than a panel has pieces.
+            self.seams[number as usize].halves = panels.map(|half| self.lay_seams(half));
+            self.all[panel as usize].parts = Parts::Two(number);
+        }
+        self.panel(panel).parts
+    }
+
+    pub(crate) fn seam(&self, seam: u32) -> &Seam {
+        &self.seams[seam as usize]
     }
 
     pub(crate) fn panel(&self, panel: u32) -> &Panel {
-        &self.panels[panel as usize]
+        &self.all[panel as usize]
     }
 
     /// The boundary of a panel.

@@ -177,18 +177,22 @@ impl Directions {
         self.push_circle(skeleton, CircleDef::Parallel(plane), skeleton.approx_normal(plane), cache)
     }
 
-    /// A direction whose approximation is good, or made good with integers.
-    fn loose(
+    /// The approximation of a direction, made good with integers if it is poor.
+    #[inline]
+    fn refined(
         &self,
         skeleton: &Skeleton,
         definition: DirectionDef,
         approx: Approx3,
         cache: &mut ExactCache,
-    ) -> LooseDirection {
-        if !approx.is_poor() {
-            return LooseDirection { definition, approx };
-        }
-        let approx = match definition {
+    ) -> Approx3 {
+        if approx.is_poor() { self.rounded(skeleton, definition, cache) } else { approx }
+    }
+
+    /// The approximation of a direction by integers.
+    #[cold]
+    fn rounded(&self, skeleton: &Skeleton, definition: DirectionDef, cache: &mut ExactCache) -> Approx3 {
+        match definition {
             DirectionDef::Point(point) => {
                 let exact = self.exact_point(skeleton, point, cache);
                 cache.arena.kept_rounded(&exact)
@@ -201,31 +205,34 @@ impl Directions {
                 let [m, n] = circles.map(|c| self.exact_normal(skeleton, c, cache));
                 if reversed { cache.arena.kept_cross(&n, &m) } else { cache.arena.kept_cross(&m, &n) }
             }
-        };
-        LooseDirection { definition, approx }
+        }
     }
 
     pub(crate) fn push_point(&mut self, skeleton: &Skeleton, point: PointId, cache: &mut ExactCache) -> DirectionId {
         let approx = skeleton.approx_point(point);
         let approx = Approx3::direction(self.eye, approx.position, approx.err.max_element());
-        let direction = self.loose(skeleton, DirectionDef::Point(point), approx, cache);
-        self.push(direction)
+        let definition = DirectionDef::Point(point);
+        let approx = self.refined(skeleton, definition, approx, cache);
+        self.push(definition, approx)
     }
 
     /// From the eye to a point that is not the scene's, but on the grid.
     pub(crate) fn push_towards(&mut self, skeleton: &Skeleton, point: DVec3, cache: &mut ExactCache) -> DirectionId {
         let approx = Approx3::direction(self.eye, point, 0.0);
-        let direction = self.loose(skeleton, DirectionDef::Towards(point), approx, cache);
-        self.push(direction)
+        let definition = DirectionDef::Towards(point);
+        let approx = self.refined(skeleton, definition, approx, cache);
+        self.push(definition, approx)
     }
 
-    fn push(&mut self, direction: LooseDirection) -> DirectionId {
-        self.definitions.push(direction.definition);
-        self.approximations.push(direction.approx);
+    #[inline]
+    fn push(&mut self, definition: DirectionDef, approx: Approx3) -> DirectionId {
+        self.definitions.push(definition);
+        self.approximations.push(approx);
         DirectionId(self.definitions.len() as u32 - 1)
     }
 
     /// The direction `n_1 x n_2`, or the opposite one.
+    #[inline]
     pub(crate) fn push_crossing(
         &mut self,
         skeleton: &Skeleton,
@@ -233,11 +240,12 @@ impl Directions {
         reversed: bool,
         cache: &mut ExactCache,
     ) -> DirectionId {
-        let direction = self.crossing(skeleton, circles, reversed, cache);
-        self.push(direction)
+        let LooseDirection { definition, approx } = self.crossing(skeleton, circles, reversed, cache);
+        self.push(definition, approx)
     }
 
     /// The same without keeping it.
+    #[inline]
     pub(crate) fn crossing(
         &self,
         skeleton: &Skeleton,
@@ -245,9 +253,10 @@ impl Directions {
         reversed: bool,
         cache: &mut ExactCache,
     ) -> LooseDirection {
-        let [m, n] = circles.map(|c| &self.normals[c.0 as usize]);
-        let approx = if reversed { n.cross(*m) } else { m.cross(*n) };
-        self.loose(skeleton, DirectionDef::Crossing { circles, reversed }, approx, cache)
+        let [first, second] = if reversed { [circles[1], circles[0]] } else { circles };
+        let approx = self.normals[first.0 as usize].cross(self.normals[second.0 as usize]);
+        let definition = DirectionDef::Crossing { circles, reversed };
+        LooseDirection { definition, approx: self.refined(skeleton, definition, approx, cache) }
     }
 
     pub(crate) fn direction(&self, d: DirectionId) -> LooseDirection {
@@ -270,6 +279,19 @@ impl Directions {
             Some(sign) => sign,
             None => self.undecided_side(skeleton, d.definition, c, cache),
         }
+    }
+
+    /// The same where the approximations have been asked already and could not tell.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn undecided_side_of(
+        &self,
+        skeleton: &Skeleton,
+        d: DirectionId,
+        c: CircleId,
+        cache: &mut ExactCache,
+    ) -> Sign {
+        self.undecided_side(skeleton, self.definitions[d.0 as usize], c, cache)
     }
 
     #[cold]
@@ -397,6 +419,11 @@ impl Directions {
         &self.approximations[d.0 as usize]
     }
 
+    /// All directions in floating point.
+    pub(crate) fn approximations(&self) -> &[Approx3] {
+        &self.approximations
+    }
+
     /// The direction as a unit vector.
     pub(crate) fn unit(&self, d: DirectionId) -> DVec3 {
         self.approximations[d.0 as usize].v.normalize_or_zero()
@@ -404,6 +431,15 @@ impl Directions {
 
     pub(crate) fn circle_count(&self) -> usize {
         self.circles.len()
+    }
+
+    /// The line of the scene that a great circle goes through, if it was made for one.
+    #[inline]
+    pub(crate) fn line(&self, c: CircleId) -> Option<LineId> {
+        match self.circles[c.0 as usize] {
+            CircleDef::Line(line) => Some(line),
+            CircleDef::Crease(_) | CircleDef::Points(_) | CircleDef::Given(_) | CircleDef::Parallel(_) => None,
+        }
     }
 
     /// The normal of a great circle in floating point: `n . d > 0` is its positive side.

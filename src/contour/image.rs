@@ -147,6 +147,11 @@ impl ContourImage {
         arcs
     }
 
+    /// All directions of the image in floating point, of any lengths; some may be corners of no cell.
+    pub(crate) fn directions(&self) -> impl ExactSizeIterator<Item = DVec3> {
+        self.tree.directions.approximations().iter().map(|direction| direction.v)
+    }
+
     pub(super) fn root(&self) -> Link {
         self.tree.root
     }
@@ -202,6 +207,11 @@ impl<'a> Cell<'a> {
     /// slivers may repeat a direction.
     pub fn boundary(self) -> impl ExactSizeIterator<Item = DVec3> + 'a {
         self.arcs().iter().map(move |arc| self.image.tree.directions.unit(arc.from))
+    }
+
+    /// The numbers of its corners among the directions of the image.
+    pub(crate) fn corners(self) -> impl ExactSizeIterator<Item = usize> + 'a {
+        self.arcs().iter().map(|arc| arc.from.0 as usize)
     }
 
     /// The great circles it is bounded by, each with the sign that directions inside have: number `k`

@@ -95,11 +95,11 @@ impl ContourImage {
                 Link::Node(node) => {
                     let node = &self.tree.nodes[node as usize];
                     match self.tree.directions.given_side(skeleton, direction, node.circle, &mut cache) {
-                        Sign::Negative => stack.push(node.negative),
-                        Sign::Positive => stack.push(node.positive),
+                        Sign::Negative => stack.push(node.negative()),
+                        Sign::Positive => stack.push(node.positive()),
                         Sign::Zero => {
                             is_on_splitter = true;
-                            stack.extend([node.negative, node.positive]);
+                            stack.extend([node.negative(), node.positive()]);
                         }
                     }
                 }

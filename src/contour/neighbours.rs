@@ -70,19 +70,22 @@ impl Across<'_> {
                 // on which side of it the cell is.
                 let own = corners.iter().map(side).find(|s| !s.is_zero());
                 match own {
-                    Some(Sign::Positive) => stack.push((node.negative, [from, to])),
-                    Some(_) => stack.push((node.positive, [from, to])),
+                    Some(Sign::Positive) => stack.push((node.negative(), [from, to])),
+                    Some(_) => stack.push((node.positive(), [from, to])),
                     None => {}
                 }
             }
-            (Sign::Positive | Sign::Zero, Sign::Positive | Sign::Zero) => stack.push((node.positive, [from, to])),
-            (Sign::Negative | Sign::Zero, Sign::Negative | Sign::Zero) => stack.push((node.negative, [from, to])),
+            (Sign::Positive | Sign::Zero, Sign::Positive | Sign::Zero) => stack.push((node.positive(), [from, to])),
+            (Sign::Negative | Sign::Zero, Sign::Negative | Sign::Zero) => stack.push((node.negative(), [from, to])),
             _ => {
                 let reversed = along.inside() * here == Sign::Negative;
                 let circles = [along.circle(), node.circle];
                 let middle = self.directions.crossing(self.skeleton, circles, reversed, &mut self.cache);
-                let (first, second) =
-                    if here.is_positive() { (node.positive, node.negative) } else { (node.negative, node.positive) };
+                let (first, second) = if here.is_positive() {
+                    (node.positive(), node.negative())
+                } else {
+                    (node.negative(), node.positive())
+                };
                 stack.push((first, [from, middle]));
                 stack.push((second, [middle, to]));
             }

@@ -3,12 +3,11 @@
 mod claim;
 
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};
-use super::polygon::{HalfSphere, Knife, PolygonArc, Sides};
+use super::polygon::{HalfSphere, Knife, PolygonArc, Sides, Span};
 use crate::bsp::Skeleton;
 use crate::exact::{BitRange, SeenBox, SeenPlane, Sign};
 use crate::scene::PieceId;
 use glam::DVec3;
-use std::ops::Range;
 
 /// A place in the tree: an inner node or a leaf.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -17,14 +16,45 @@ pub(crate) enum Link {
     Leaf(u32),
 }
 
+impl Link {
+    /// In four bytes: a view has many nodes.
+    #[inline]
+    fn packed(self) -> u32 {
+        match self {
+            Self::Node(node) => node << 1,
+            Self::Leaf(leaf) => leaf << 1 | 1,
+        }
+    }
+
+    #[inline]
+    fn unpacked(packed: u32) -> Self {
+        if packed & 1 == 0 { Self::Node(packed >> 1) } else { Self::Leaf(packed >> 1) }
+    }
+}
+
+/// In place of the number of a node above.
+const NO_PARENT: u32 = u32::MAX;
+
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct TreeNode {
     pub(crate) circle: CircleId,
-    pub(crate) negative: Link,
-    pub(crate) positive: Link,
-    parent: Option<u32>,
+    /// The links to what is on its negative and on its positive side.
+    children: [u32; 2],
+    parent: u32,
     /// The greatest of the leaves below.
     far: f64,
+}
+
+impl TreeNode {
+    #[inline]
+    pub(crate) fn negative(&self) -> Link {
+        Link::unpacked(self.children[0])
+    }
+
+    #[inline]
+    pub(crate) fn positive(&self) -> Link {
+        Link::unpacked(self.children[1])
+    }
 }
 
 /// What is known of a leaf.
@@ -44,9 +74,8 @@ pub(crate) struct Leaf {
     pub(crate) state: LeafState,
     /// Nothing that is at least this far from the eye can be seen in it: infinite if it is open.
     far: f64,
-    start: u32,
-    len: u32,
-    parent: Option<u32>,
+    boundary: Span,
+    parent: u32,
 }
 
 /// The tree of one view, with its great circles and directions.
@@ -86,10 +115,7 @@ pub(crate) enum Verdict {
 pub(crate) struct Workspace {
     pub(crate) knife: Knife,
     arcs: Vec<PolygonArc>,
-    stack: Vec<(Link, usize, usize)>,
-    negative: Vec<PolygonArc>,
-    positive: Vec<PolygonArc>,
-    region: Vec<PolygonArc>,
+    stack: Vec<(Link, Span)>,
     links: Vec<Link>,
     /// The leaves that the last insertion filled.
     pub(crate) filled: Vec<u32>,
@@ -138,7 +164,7 @@ impl ContourTree {
             let circles = [planes[(axis + 1) % 3], planes[(axis + 2) % 3]];
             *pole = [false, true].map(|r| directions.push_crossing(skeleton, circles, r, &mut knife.cache));
         }
-        tree.octant_node(planes, poles, &mut Vec::new(), None);
+        tree.octant_node(planes, poles, &mut Vec::new(), NO_PARENT);
         tree
     }
 
@@ -147,7 +173,7 @@ impl ContourTree {
         planes: [CircleId; 3],
         poles: [[DirectionId; 2]; 3],
         signs: &mut Vec<Sign>,
-        parent: Option<u32>,
+        parent: u32,
     ) -> Link {
         if let &[x, y, z] = signs.as_slice() {
             let corner = |axis: usize| poles[axis][usize::from(signs[axis].is_negative())];
@@ -161,50 +187,27 @@ impl ContourTree {
             return self.push_leaf(&arcs, parent);
         }
         let node = self.nodes.len() as u32;
-        let unset = Link::Leaf(u32::MAX);
         let circle = planes[signs.len()];
-        self.nodes.push(TreeNode { circle, negative: unset, positive: unset, parent, far: f64::INFINITY });
-        let [negative, positive] = [Sign::Negative, Sign::Positive].map(|sign| {
+        self.nodes.push(TreeNode { circle, children: [0; 2], parent, far: f64::INFINITY });
+        let children = [Sign::Negative, Sign::Positive].map(|sign| {
             signs.push(sign);
-            let child = self.octant_node(planes, poles, signs, Some(node));
+            let child = self.octant_node(planes, poles, signs, node);
             signs.pop();
             child
         });
-        (self.nodes[node as usize].negative, self.nodes[node as usize].positive) = (negative, positive);
+        self.nodes[node as usize].children = children.map(Link::packed);
         Link::Node(node)
     }
 
-    fn push_leaf(&mut self, boundary: &[PolygonArc], parent: Option<u32>) -> Link {
-        let leaf = self.open_leaf(boundary, parent);
-        self.leaves.push(leaf);
+    fn push_leaf(&mut self, boundary: &[PolygonArc], parent: u32) -> Link {
+        let boundary = Span::keep(boundary, &mut self.arcs);
+        self.leaves.push(Leaf { state: LeafState::Open, far: f64::INFINITY, boundary, parent });
         Link::Leaf(self.leaves.len() as u32 - 1)
-    }
-
-    /// Keeps a boundary and gives the open leaf that has it.
-    fn open_leaf(&mut self, boundary: &[PolygonArc], parent: Option<u32>) -> Leaf {
-        let start = self.arcs.len() as u32;
-        self.arcs.extend_from_slice(boundary);
-        Leaf { state: LeafState::Open, far: f64::INFINITY, start, len: boundary.len() as u32, parent }
-    }
-
-    /// Gives a leaf another boundary within its own, in the same place if that is large enough.
-    fn narrow(&mut self, leaf: u32, boundary: &[PolygonArc], parent: Option<u32>) {
-        let Leaf { start, len, .. } = self.leaves[leaf as usize];
-        let start = if boundary.len() <= len as usize {
-            self.arcs[start as usize..][..boundary.len()].copy_from_slice(boundary);
-            start
-        } else {
-            self.arcs.extend_from_slice(boundary);
-            (self.arcs.len() - boundary.len()) as u32
-        };
-        let narrowed = &mut self.leaves[leaf as usize];
-        (narrowed.start, narrowed.len, narrowed.parent) = (start, boundary.len() as u32, parent);
     }
 
     /// The boundary of a leaf.
     pub(crate) fn boundary(&self, leaf: u32) -> &[PolygonArc] {
-        let leaf = &self.leaves[leaf as usize];
-        &self.arcs[leaf.start as usize..(leaf.start + leaf.len) as usize]
+        &self.arcs[self.leaves[leaf as usize].boundary.range()]
     }
 
     /// Nothing that is at least this far from the eye can be seen.
@@ -219,28 +222,27 @@ impl ContourTree {
         }
     }
 
-    fn replace(&mut self, parent: Option<u32>, old: Link, new: Link) {
-        match parent {
-            None => self.root = new,
-            Some(parent) => {
-                let node = &mut self.nodes[parent as usize];
-                *(if node.negative == old { &mut node.negative } else { &mut node.positive }) = new;
-            }
+    fn replace(&mut self, parent: u32, old: Link, new: Link) {
+        if parent == NO_PARENT {
+            self.root = new;
+            return;
         }
+        let [negative, positive] = &mut self.nodes[parent as usize].children;
+        *(if *negative == old.packed() { negative } else { positive }) = new.packed();
     }
 
     /// Gives a leaf its state and tells the nodes above.
     fn close(&mut self, leaf: u32, state: LeafState, far: f64) {
         let Leaf { parent: mut above, .. } = self.leaves[leaf as usize];
         (self.leaves[leaf as usize].state, self.leaves[leaf as usize].far) = (state, far);
-        while let Some(node) = above {
-            let TreeNode { negative, positive, parent, far, .. } = self.nodes[node as usize];
-            let most = self.link_far(negative).max(self.link_far(positive));
-            if most.total_cmp(&far).is_eq() {
+        while above != NO_PARENT {
+            let node = self.nodes[above as usize];
+            let most = self.link_far(node.negative()).max(self.link_far(node.positive()));
+            if most.total_cmp(&node.far).is_eq() {
                 return;
             }
-            self.nodes[node as usize].far = most;
-            above = parent;
+            self.nodes[above as usize].far = most;
+            above = node.parent;
         }
     }
 
@@ -275,36 +277,22 @@ impl ContourTree {
         known: impl FnMut(&mut Directions, &mut ExactCache, PolygonArc) -> Option<DirectionId>,
         work: &mut Workspace,
     ) -> [Option<u32>; 2] {
-        let Leaf { state, far, start, len, parent } = self.leaves[leaf as usize];
-        let region = &self.arcs[start as usize..(start + len) as usize];
-        let sides = work.knife.classify(skeleton, &self.directions, region, half.circle());
+        let Leaf { state, far, boundary, parent } = self.leaves[leaf as usize];
+        let sides = work.knife.classify(skeleton, &self.directions, &self.arcs[boundary.range()], half.circle());
         if let Some(only) = one_side(sides, half.inside()) {
             return if only == half.inside() { [Some(leaf), None] } else { [None, Some(leaf)] };
         }
-        work.negative.clear();
-        work.positive.clear();
-        work.knife.cut(
-            skeleton,
-            &mut self.directions,
-            region,
-            half.circle(),
-            known,
-            &mut work.negative,
-            &mut work.positive,
-        );
+        let [negative, positive] =
+            work.knife.cut(skeleton, &mut self.directions, &mut self.arcs, boundary, half.circle(), known);
+        let negative = boundary.replace_by_last(negative, &mut self.arcs);
         let node = self.nodes.len() as u32;
         self.replace(parent, Link::Leaf(leaf), Link::Node(node));
         // The leaf itself becomes the negative child, so that no leaf is ever out of the tree.
         let other = self.leaves.len() as u32;
-        let [negative, positive] = [&work.negative, &work.positive].map(|boundary| Leaf {
-            state,
-            far,
-            ..self.open_leaf(boundary, Some(node))
-        });
-        self.leaves[leaf as usize] = negative;
-        self.leaves.push(positive);
-        let (negative, positive) = (Link::Leaf(leaf), Link::Leaf(other));
-        self.nodes.push(TreeNode { circle: half.circle(), negative, positive, parent, far });
+        self.leaves[leaf as usize] = Leaf { state, far, boundary: negative, parent: node };
+        self.leaves.push(Leaf { state, far, boundary: positive, parent: node });
+        let children = [leaf, other].map(|leaf| Link::Leaf(leaf).packed());
+        self.nodes.push(TreeNode { circle: half.circle(), children, parent, far });
         if half.inside().is_positive() { [Some(other), Some(leaf)] } else { [Some(leaf), Some(other)] }
     }
 
@@ -322,60 +310,51 @@ impl ContourTree {
         work: &mut Workspace,
     ) {
         work.arcs.clear();
-        work.arcs.extend_from_slice(polygon);
+        let whole = Span::keep(polygon, &mut work.arcs);
         work.filled.clear();
         work.stack.clear();
-        work.stack.push((top, 0, polygon.len()));
-        while let Some((link, start, len)) = work.stack.pop() {
+        work.stack.push((top, whole));
+        while let Some((link, part)) = work.stack.pop() {
             let node = match self.descend(link, seen, filler.near, &mut work.visited) {
                 None => continue,
                 Some(Link::Leaf(leaf)) => {
                     let Leaf { state, far, .. } = self.leaves[leaf as usize];
                     let verdict = match state {
                         LeafState::Filled(piece) if far > filler.near => {
-                            judge(&mut self.directions, &mut work.knife, piece, &work.arcs[start..start + len])
+                            judge(&mut self.directions, &mut work.knife, piece, &work.arcs[part.range()])
                         }
                         LeafState::Open => Verdict::InFront,
                         LeafState::Filled(_) | LeafState::Outside => Verdict::Behind,
                     };
-                    let range = match verdict {
+                    let part = match verdict {
                         Verdict::Behind => continue,
-                        Verdict::InFront => start..start + len,
-                        Verdict::InFrontWithin(half) => self.cut_off(skeleton, start..start + len, half, work),
+                        Verdict::InFront => part,
+                        Verdict::InFrontWithin(half) => {
+                            let [negative, positive] = self.cut_part(skeleton, part, half.circle(), work);
+                            if half.inside().is_positive() { positive } else { negative }
+                        }
                     };
-                    self.fill(skeleton, leaf, range, filler, work);
+                    self.fill(skeleton, leaf, part, filler, work);
                     continue;
                 }
                 Some(Link::Node(node)) => node,
             };
-            let TreeNode { circle, negative, positive, .. } = self.nodes[node as usize];
-            let part = &work.arcs[start..start + len];
-            if let Some(side) = part.iter().find(|arc| arc.along.circle() == circle) {
+            let node = self.nodes[node as usize];
+            let (circle, negative, positive) = (node.circle, node.negative(), node.positive());
+            let sides = &work.arcs[part.range()];
+            if let Some(side) = sides.iter().find(|arc| arc.along.circle() == circle) {
                 let child = if side.along.inside().is_positive() { positive } else { negative };
-                work.stack.push((child, start, len));
+                work.stack.push((child, part));
                 continue;
             }
-            let sides = work.knife.classify(skeleton, &self.directions, part, circle);
-            match sides {
-                Sides { negative: false, .. } => work.stack.push((positive, start, len)),
-                Sides { positive: false, .. } => work.stack.push((negative, start, len)),
+            match work.knife.classify(skeleton, &self.directions, sides, circle) {
+                Sides { negative: false, .. } => work.stack.push((positive, part)),
+                Sides { positive: false, .. } => work.stack.push((negative, part)),
                 _ => {
-                    work.negative.clear();
-                    work.positive.clear();
-                    work.knife.cut(
-                        skeleton,
-                        &mut self.directions,
-                        part,
-                        circle,
-                        |_, _, _| None,
-                        &mut work.negative,
-                        &mut work.positive,
-                    );
-                    for (child, arcs) in [(negative, &work.negative), (positive, &work.positive)] {
+                    let parts = self.cut_part(skeleton, part, circle, work);
+                    for (child, part) in [negative, positive].into_iter().zip(parts) {
                         if self.link_far(child) > filler.near {
-                            let start = work.arcs.len();
-                            work.arcs.extend_from_slice(arcs);
-                            work.stack.push((child, start, arcs.len()));
+                            work.stack.push((child, part));
                         }
                     }
                 }
@@ -394,61 +373,42 @@ impl ContourTree {
             }
             *visited += 1;
             match seen.side(self.directions.normal(node.circle)) {
-                Some(side) => link = if side.is_positive() { node.positive } else { node.negative },
+                Some(side) => link = if side.is_positive() { node.positive() } else { node.negative() },
                 None => break,
             }
         }
         Some(link)
     }
 
-    /// The part of a polygon, classified last, within a half sphere.
-    fn cut_off(
-        &mut self,
-        skeleton: &Skeleton,
-        polygon: Range<usize>,
-        half: HalfSphere,
-        work: &mut Workspace,
-    ) -> Range<usize> {
-        work.negative.clear();
-        work.positive.clear();
-        work.knife.cut(
-            skeleton,
-            &mut self.directions,
-            &work.arcs[polygon],
-            half.circle(),
-            |_, _, _| None,
-            &mut work.negative,
-            &mut work.positive,
-        );
-        let start = work.arcs.len();
-        work.arcs.extend_from_slice(if half.inside().is_positive() { &work.positive } else { &work.negative });
-        start..work.arcs.len()
+    /// The two parts of a polygon that is put in and was classified last.
+    fn cut_part(&mut self, skeleton: &Skeleton, part: Span, circle: CircleId, work: &mut Workspace) -> [Span; 2] {
+        work.knife.cut(skeleton, &mut self.directions, &mut work.arcs, part, circle, |_, _, _| None)
     }
 
     /// Fills the part of a leaf that a polygon within it covers.
     ///
     /// Every side of the polygon that is not on the leaf's boundary becomes a node; what lies outside
     /// of it stays as it is.
-    fn fill(&mut self, skeleton: &Skeleton, leaf: u32, polygon: Range<usize>, filler: &Filler, work: &mut Workspace) {
-        let Leaf { state, far, start, len, mut parent } = self.leaves[leaf as usize];
-        let mut here = Link::Leaf(leaf);
-        work.region.clear();
-        work.region.extend_from_slice(&self.arcs[start as usize..(start + len) as usize]);
-        for k in polygon.clone() {
-            let side = work.arcs[k];
+    fn fill(&mut self, skeleton: &Skeleton, leaf: u32, polygon: Span, filler: &Filler, work: &mut Workspace) {
+        let Leaf { state, far, boundary: place, mut parent } = self.leaves[leaf as usize];
+        // What is left of the leaf.
+        let mut region = place;
+        let polygon = &work.arcs[polygon.range()];
+        for (k, &side) in polygon.iter().enumerate() {
             let (circle, inside) = (side.along.circle(), side.along.inside());
-            if work.region.iter().any(|arc| arc.along.circle() == circle) {
+            let sides = &self.arcs[region.range()];
+            if sides.iter().any(|arc| arc.along.circle() == circle) {
                 continue;
             }
-            let sides = work.knife.classify(skeleton, &self.directions, &work.region, circle);
+            let sides = work.knife.classify(skeleton, &self.directions, sides, circle);
             if let Some(only) = one_side(sides, inside) {
                 debug_assert_eq!(only, inside, "the polygon lies in the leaf");
                 continue;
             }
             // Where the region's boundary already follows the polygon's neighbouring side, it is
             // crossed at the polygon's own corner.
-            let previous = work.arcs[if k == polygon.start { polygon.end - 1 } else { k - 1 }];
-            let next = work.arcs[if k + 1 == polygon.end { polygon.start } else { k + 1 }];
+            let previous = polygon[if k == 0 { polygon.len() - 1 } else { k - 1 }];
+            let next = polygon[if k + 1 == polygon.len() { 0 } else { k + 1 }];
             let known = |_: &mut Directions, _: &mut ExactCache, arc: PolygonArc| {
                 let circle = arc.along.circle();
                 if circle == previous.along.circle() {
@@ -459,36 +419,24 @@ impl ContourTree {
                     None
                 }
             };
-            work.negative.clear();
-            work.positive.clear();
-            work.knife.cut(
-                skeleton,
-                &mut self.directions,
-                &work.region,
-                circle,
-                known,
-                &mut work.negative,
-                &mut work.positive,
-            );
-            let node = self.nodes.len() as u32;
-            self.replace(parent, here, Link::Node(node));
-            let Workspace { negative: below, positive: above, region, .. } = &mut *work;
+            let [below, above] = work.knife.cut(skeleton, &mut self.directions, &mut self.arcs, region, circle, known);
             let (outside, kept) = if inside.is_positive() { (below, above) } else { (above, below) };
-            std::mem::swap(region, kept);
-            let outside = self.push_leaf(outside, Some(node));
-            if let Some(last) = self.leaves.last_mut() {
-                (last.state, last.far) = (state, far);
-            }
-            here = Link::Leaf(leaf);
-            let (negative, positive) = if inside.is_positive() { (outside, here) } else { (here, outside) };
-            self.nodes.push(TreeNode { circle, negative, positive, parent, far });
-            parent = Some(node);
+            region = kept;
+            let node = self.nodes.len() as u32;
+            self.replace(parent, Link::Leaf(leaf), Link::Node(node));
+            let other = self.leaves.len() as u32;
+            self.leaves.push(Leaf { state, far, boundary: outside, parent: node });
+            let children = if inside.is_positive() { [other, leaf] } else { [leaf, other] };
+            let children = children.map(|leaf| Link::Leaf(leaf).packed());
+            self.nodes.push(TreeNode { circle, children, parent, far });
+            parent = node;
         }
-        let boundary = &work.arcs[polygon];
-        self.narrow(leaf, boundary, parent);
+        let filled = &mut self.leaves[leaf as usize];
+        filled.boundary = place.replace(polygon, &mut self.arcs);
+        filled.parent = parent;
         // A convex part of a plane is farthest at one of its corners.
         let far = filler.plane.map_or(filler.far, |plane| {
-            let corners = boundary.iter().map(|arc| plane.distance(self.directions.approximation(arc.from)));
+            let corners = polygon.iter().map(|arc| plane.distance(self.directions.approximation(arc.from)));
             corners.fold(0.0, f64::max).min(filler.far)
         });
         self.close(leaf, LeafState::Filled(filler.piece), far);
@@ -507,9 +455,9 @@ impl ContourTree {
             let Link::Node(node) = link else { return false };
             let node = &self.nodes[node as usize];
             match seen.side(self.directions.normal(node.circle)) {
-                Some(Sign::Positive) => work.links.push(node.positive),
-                Some(_) => work.links.push(node.negative),
-                None => work.links.extend([node.negative, node.positive]),
+                Some(Sign::Positive) => work.links.push(node.positive()),
+                Some(_) => work.links.push(node.negative()),
+                None => work.links.extend([node.negative(), node.positive()]),
             }
         }
         true
@@ -523,8 +471,8 @@ impl ContourTree {
         while let Link::Node(number) = link {
             let node = &self.nodes[number as usize];
             let child = match seen.side(self.directions.normal(node.circle)) {
-                Some(Sign::Positive) => node.positive,
-                Some(_) => node.negative,
+                Some(Sign::Positive) => node.positive(),
+                Some(_) => node.negative(),
                 None => break,
             };
             // A leaf may become a node later, and then it is only a part of it.

@@ -204,6 +204,14 @@ impl<'a> Sight<'a> {
         HalfSphere::new(self.circle(line), inside)
     }
 
+    /// The half sphere of an edge between pieces of which the eye is shown that side, by the line that stands for all that are the same: the
+    /// inside of what has the edge as a side is in it.
+    fn along_edge(&mut self, side: FragmentSide, shown: Side) -> HalfSphere {
+        debug_assert!(matches!(self.skeleton.line(side.line), LineDef::Edge(_)));
+        let inside = if side.forward == (shown == Side::Back) { Sign::Positive } else { Sign::Negative };
+        HalfSphere::new(self.circle(side.line), inside)
+    }
+
     fn circle(&mut self, line: LineId) -> CircleId {
         let Self { skeleton, contour, buffers, .. } = self;
         let make = || contour.directions.push_line(skeleton, line, &mut buffers.work.knife.cache).0;

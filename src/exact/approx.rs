@@ -73,8 +73,18 @@ impl Approx3 {
     }
 
     /// The cross product of two approximate vectors.
+    #[inline]
     pub(crate) fn cross(self, other: Self) -> Self {
-        Self::normalised(self.v.cross(other.v), self.cross_error(&other))
+        let v = self.v.cross(other.v);
+        let larger = |a: f64, b: f64| if a > b { a } else { b };
+        let most = larger(larger(v.x.abs(), v.y.abs()), v.z.abs());
+        // As `normalised`, where no component is above 8 and all are numbers.
+        if most < f64::MIN_POSITIVE {
+            return Self::UNKNOWN;
+        }
+        let scale = f64::from_bits((2046 - (most.to_bits() >> 52)) << 52);
+        let err = self.cross_error(&other) * scale;
+        if err <= 0.125 { Self { v: v * scale, slack: 8.0 * err + 32.0 * U } } else { Self::UNKNOWN }
     }
 
     /// True if the two vectors are certainly not parallel.
@@ -111,6 +121,13 @@ impl Approx3 {
     #[inline]
     pub(crate) fn dot_sign(&self, other: &Self) -> Option<Sign> {
         decided(self.v.dot(other.v), self.slack + other.slack)
+    }
+
+    /// Whether the dot product of the two real vectors is certainly positive, and whether it is certainly negative: as [`Approx3::dot_sign`].
+    #[inline]
+    pub(crate) fn dot_sides(&self, other: &Self) -> (bool, bool) {
+        let (x, bound) = (self.v.dot(other.v), self.slack + other.slack);
+        (x > bound, x < -bound)
     }
 
     /// The sign of the determinant `self . (b x c)` of the three real vectors, if f64 can tell.

@@ -10,7 +10,7 @@ use super::seen::{Columns, LookSpace, Looker};
 use super::shaft::Lies;
 use super::shape::clip;
 use super::{Sides, contour, pair};
-use crate::integral::UnitDirection;
+use crate::integral::Receiver;
 use glam::DVec3;
 use std::convert::Infallible;
 use std::ops::Range;
@@ -281,7 +281,7 @@ impl ElementRows<'_> {
         let elements = self.blockers.elements;
         let from = &elements.elements[number as usize];
         let frame = &elements.frames[from.facet as usize];
-        let Some(normal) = UnitDirection::new(frame.normal) else { return };
+        let receiver = Receiver::new(frame.normal);
         let RowSpace { hidden, single, around: Some(around), found, .. } = &mut *space else { return };
         let partly: Vec<u32> = elements.of_patch[column as usize]
             .iter()
@@ -299,7 +299,7 @@ impl ElementRows<'_> {
                 element: target,
                 frame: &elements.frames[target.facet as usize],
                 horizon: (around.facet_lies(target.facet) == Lies::Across).then_some(frame),
-                normal,
+                receiver,
                 blockers: blockers.collect(),
             };
             let look = |point: DVec3, add: &mut dyn FnMut(u32, f64)| {

@@ -6,7 +6,7 @@
 
 use super::element::Element;
 use super::shape::{Frame, clip};
-use crate::integral::{self, UnitDirection};
+use crate::integral::Receiver;
 use glam::{DVec2, DVec3};
 
 /// An element, seen from another one.
@@ -16,8 +16,8 @@ pub(super) struct Target<'a> {
     pub(super) frame: &'a Frame,
     /// The plane of what it is seen from, if part of it is behind that.
     pub(super) horizon: Option<&'a Frame>,
-    /// Where it is seen from.
-    pub(super) normal: UnitDirection,
+    /// What it is seen from.
+    pub(super) receiver: Receiver,
     /// What may be between: corners, counter-clockwise seen from the front, and the plane.
     pub(super) blockers: Vec<(&'a [DVec3], &'a Frame)>,
 }
@@ -95,10 +95,9 @@ impl Target<'_> {
         let mut sum = 0.0;
         for part in parts.drain(..) {
             if part.len() >= 3 {
-                corners.clear();
                 // Clockwise as seen from the point.
-                corners.extend(part.iter().rev().map(|&p| (self.frame.lift(p) - point).normalize_or_zero()));
-                sum += integral::form_factor_of_rounded(corners, self.normal);
+                let towards = |&p: &DVec2| self.frame.lift(p) - point;
+                sum += self.receiver.factor_of(part.iter().rev().map(towards), corners);
             }
             free.push(part);
         }

@@ -6,7 +6,7 @@ use super::shape::{Frame, clip, sides, turn};
 use super::tree::ElementTree;
 use super::{ExchangeError, Sides};
 use crate::contour::{Cell, ContourImage, Domain, ViewOptions, ViewSpace, Viewpoint};
-use crate::integral::{self, UnitDirection};
+use crate::integral::Receiver;
 use crate::scene::{PieceId, PolygonId, Side};
 use glam::{DVec2, DVec3};
 
@@ -69,15 +69,10 @@ impl Looker<'_> {
         let LookSpace { view, flat, parts, corners, stack, met } = space;
         let image = self.facets.order.view_in(view, &viewpoint, &Domain::Above, &ViewOptions::default());
         let image: &ContourImage = image.map_err(|error| fails(error.to_string()))?;
-        let normal = self.elements.frames[facet as usize].normal;
-        let Some(normal) = UnitDirection::new(normal) else { return Err(fails("the facet has no normal".to_owned())) };
+        let receiver = Receiver::new(self.elements.frames[facet as usize].normal);
         let columns = Columns { patches: self.elements.patches.len() as u32 };
         for cell in image.cells() {
-            let whole = |corners: &mut Vec<DVec3>| {
-                corners.clear();
-                corners.extend(cell.boundary());
-                integral::form_factor_of_rounded(corners, normal)
-            };
+            let whole = |corners: &mut Vec<DVec3>| receiver.factor_of(cell.boundary(), corners);
             let (Some(seen), Some(side)) = (cell.polygon(), cell.side()) else {
                 share(columns.background(), whole(corners));
                 continue;
@@ -121,13 +116,14 @@ impl Looker<'_> {
                         }
                         let part = common(flat, &element.flat, parts);
                         if part.len() >= 3 {
-                            corners.clear();
-                            corners.extend(part.iter().map(|&p| (frame.lift(p) - viewpoint.eye()).normalize_or_zero()));
+                            let towards = |&p: &DVec2| frame.lift(p) - viewpoint.eye();
                             // As seen from outside of the sphere.
-                            if side == Side::Front {
-                                corners.reverse();
-                            }
-                            share(element.patch, integral::form_factor_of_rounded(corners, normal));
+                            let factor = if side == Side::Front {
+                                receiver.factor_of(part.iter().rev().map(towards), corners)
+                            } else {
+                                receiver.factor_of(part.iter().map(towards), corners)
+                            };
+                            share(element.patch, factor);
                         }
                     }
                 }

@@ -1,7 +1,7 @@
 //! The diffuse form factor of a spherical polygon.
 
 use super::flux::double_flux;
-use super::unit::{UnitDirection, arcs, outline};
+use super::unit::{UnitDirection, outline};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -30,22 +30,8 @@ pub fn form_factor_of_units(boundary: &[UnitDirection], normal: DVec3) -> f64 {
     of_outline(&outline(boundary.iter().copied()), normal)
 }
 
-/// [`form_factor`] to a polygon whose vertices are unit vectors of `f64`, as corners of cells are. Their rounding moves each by
-/// 1e-16 as it is, so that as much again for their lengths does not matter.
-pub(crate) fn form_factor_of_rounded(corners: &[DVec3], normal: UnitDirection) -> f64 {
-    // No corner is left out, and no arc is longer than 90 degrees.
-    if arcs(corners).all(|[a, b]| a.dot(*b) > 0.0) {
-        towards(normal, double_flux(corners))
-    } else {
-        towards(normal, double_flux(&outline(corners.iter().filter_map(|&v| UnitDirection::new(v)))))
-    }
-}
-
 fn of_outline(outline: &[UnitDirection], normal: DVec3) -> f64 {
-    UnitDirection::new(normal).map_or(0.0, |normal| towards(normal, double_flux(outline)))
-}
-
-fn towards(normal: UnitDirection, double_flux: DVec3) -> f64 {
-    let factor = normal.rounded().dot(double_flux) / TAU;
+    let Some(normal) = UnitDirection::new(normal) else { return 0.0 };
+    let factor = normal.rounded().dot(double_flux(outline)) / TAU;
     if factor > 0.0 { factor } else { 0.0 }
 }

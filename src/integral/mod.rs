@@ -8,15 +8,17 @@
 mod flux;
 mod form_factor;
 mod precise;
+mod receiver;
 mod solid_angle;
 mod sums;
 mod unit;
+mod visible;
 
 #[cfg(test)]
 mod tests;
 
-pub(crate) use form_factor::form_factor_of_rounded;
 pub use form_factor::{form_factor, form_factor_of_units};
+pub(crate) use receiver::Receiver;
 pub use solid_angle::{solid_angle, solid_angle_of_units};
 pub use unit::UnitDirection;
 

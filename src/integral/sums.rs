@@ -1,12 +1,12 @@
 //! Solid angles and form factors of what a contour image shows.
 
-use super::form_factor::form_factor_of_rounded;
 use super::precise::{Bounded, PreciseFactors};
-use super::{UnitDirection, solid_angle};
+use super::receiver::Receiver;
+use super::solid_angle;
+use super::visible::Visible;
 use crate::contour::{Cell, ContourImage, VisibleRegion};
-use crate::scene::{ObjectId, PolygonId, Scene, Side};
+use crate::scene::{ObjectId, PlaneId, PolygonId, Scene, Side};
 use glam::DVec3;
-use rustc_hash::FxHashMap;
 use std::collections::BTreeMap;
 
 /// A quantity of a [`ContourImage`] summed over the cells of each polygon.
@@ -61,16 +61,28 @@ impl Sums {
 impl ContourImage {
     /// The solid angle in which each polygon is seen, in steradians; they sum to that of the domain.
     pub fn solid_angles(&self) -> Sums {
-        self.sums(solid_angle)
+        let mut corners = Vec::new();
+        self.sums(|cell| {
+            corners.clear();
+            corners.extend(cell.boundary());
+            solid_angle(&corners)
+        })
     }
 
     /// The form factor from the viewpoint (a differential element with the domain's normal) to each
     /// polygon: the share of diffusely emitted energy that arrives there. They sum to 1 with the
     /// background. `None` if the domain has no normal.
     pub fn form_factors(&self) -> Option<Sums> {
-        let normal = self.normal()?;
-        let normal = UnitDirection::new(normal)?;
-        Some(self.sums(|corners| form_factor_of_rounded(corners, normal)))
+        let receiver = Receiver::new(self.normal()?);
+        // Each direction is a corner of several cells.
+        let turned: Vec<DVec3> = self.directions().map(|direction| receiver.turned(direction)).collect();
+        let mut corners = Vec::new();
+        Some(self.sums(|cell| {
+            corners.clear();
+            corners.extend(cell.corners().map(|corner| turned[corner]));
+            corners.push(corners[0]);
+            Receiver::factor(&corners)
+        }))
     }
 
     /// The same, each sum with an error below 1e-9 of itself, or below 1e-24 if that is more: also of what is small, far, thin, cut off by
@@ -97,17 +109,19 @@ impl ContourImage {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn precise_form_factors(&self) -> Option<Sums> {
-        let normal = UnitDirection::new(self.normal()?)?;
-        let mut places = Places::default();
-        let mut sums: Vec<Bounded> = Vec::new();
+        let normal = self.normal()?;
+        let receiver = Receiver::new(normal);
+        let places = Places::of(self);
+        let mut sums = vec![Bounded::default(); places.count()];
         let mut corners = Vec::new();
-        for cell in self.cells() {
+        let mut turned = Vec::new();
+        for (cell, &place) in self.cells().zip(&places.of_cells) {
             corners.clear();
             corners.extend(cell.boundary());
-            let factor = form_factor_of_rounded(&corners, normal);
-            let place = places.of(cell);
-            sums.resize(sums.len().max(place + 1), Bounded::default());
-            sums[place].add(Bounded::of(cell, &corners, normal.rounded(), factor));
+            turned.clear();
+            turned.extend(corners.iter().chain(corners.first()).map(|&corner| receiver.turned(corner)));
+            let factor = Receiver::factor(&turned);
+            sums[place as usize].add(Bounded::of(cell, &corners, normal, factor));
         }
         let is_poor: Vec<bool> = sums.iter().map(|sum| sum.is_poor()).collect();
         if is_poor.contains(&true) {
@@ -115,58 +129,72 @@ impl ContourImage {
             for (sum, _) in sums.iter_mut().zip(&is_poor).filter(|(_, is_poor)| **is_poor) {
                 sum.value = 0.0;
             }
-            for cell in self.cells() {
-                let place = places.of(cell);
-                if is_poor[place] {
-                    sums[place].value += precise.of(cell);
+            for (cell, &place) in self.cells().zip(&places.of_cells) {
+                if is_poor[place as usize] {
+                    sums[place as usize].value += precise.of(cell);
                 }
             }
         }
-        Some(places.sums(|place| sums.get(place).map_or(0.0, |sum| sum.value)))
+        Some(places.sums(|place| sums[place].value))
     }
 
-    fn sums(&self, measure: impl Fn(&[DVec3]) -> f64) -> Sums {
-        let mut places = Places::default();
-        let mut sums = Vec::new();
-        let mut corners = Vec::new();
-        for cell in self.cells() {
-            corners.clear();
-            corners.extend(cell.boundary());
-            let place = places.of(cell);
-            sums.resize(sums.len().max(place + 1), 0.0);
-            sums[place] += measure(&corners);
+    fn sums(&self, mut measure: impl FnMut(Cell<'_>) -> f64) -> Sums {
+        let places = Places::of(self);
+        let mut sums = vec![0.0; places.count()];
+        for (cell, &place) in self.cells().zip(&places.of_cells) {
+            sums[place as usize] += measure(cell);
         }
-        places.sums(|place| sums.get(place).copied().unwrap_or(0.0))
+        places.sums(|place| sums[place])
     }
 }
 
-/// A place for a sum of each side of each visible polygon, and the first one for the background: the cells of one are added in
+/// A place for a sum of each side of each visible polygon, ascending, after one for the background: the cells of one are added in
 /// their order.
-#[derive(Default)]
 struct Places {
-    /// One more than half the place of the front. Not by all polygons: few may be seen of many.
-    of_polygon: FxHashMap<PolygonId, u32>,
+    of_cells: Vec<u32>,
     visible: Vec<PolygonId>,
 }
 
 impl Places {
-    fn of(&mut self, cell: Cell<'_>) -> usize {
-        let (Some(polygon), Some(side)) = (cell.polygon(), cell.side()) else { return 0 };
-        let visible = &mut self.visible;
-        let number = *self.of_polygon.entry(polygon).or_insert_with(|| {
-            visible.push(polygon);
-            visible.len() as u32
-        });
-        number as usize * 2 - usize::from(side == Side::Front)
+    fn of(image: &ContourImage) -> Self {
+        let scene = image.scene();
+        let mut visible = Visible::none(scene.polygon_count());
+        let mut seen = Vec::with_capacity(image.cell_count());
+        // Cells that follow each other are mostly of one plane.
+        let mut last: Option<(PlaneId, bool)> = None;
+        for cell in image.cells() {
+            let Some(piece) = cell.piece() else {
+                seen.push(None);
+                continue;
+            };
+            let piece = scene.piece(piece);
+            let plane = piece.plane_id();
+            let is_above = match last {
+                Some((known, is_above)) if known == plane => is_above,
+                _ => cell.side() == Some(piece.facing()),
+            };
+            last = Some((plane, is_above));
+            visible.insert(piece.polygon());
+            let side = if is_above { piece.facing() } else { piece.facing().opposite() };
+            seen.push(Some((piece.polygon(), side)));
+        }
+        let mut polygons = Vec::with_capacity(visible.count());
+        polygons.extend(visible.iter());
+        let place = |seen: Option<(PolygonId, Side)>| {
+            seen.map_or(0, |(polygon, side)| {
+                2 * visible.place(polygon) as u32 + if side == Side::Front { 1 } else { 2 }
+            })
+        };
+        Self { of_cells: seen.into_iter().map(place).collect(), visible: polygons }
     }
 
-    fn sums(mut self, at: impl Fn(usize) -> f64) -> Sums {
-        self.visible.sort_unstable();
-        let sum = |polygon: PolygonId| {
-            let place = self.of_polygon[&polygon] as usize * 2;
-            PolygonSum { polygon, front: at(place - 1), back: at(place) }
-        };
-        Sums { polygons: self.visible.iter().map(|&polygon| sum(polygon)).collect(), background: at(0) }
+    fn count(&self) -> usize {
+        2 * self.visible.len() + 1
+    }
+
+    fn sums(self, at: impl Fn(usize) -> f64) -> Sums {
+        let of = |(k, polygon): (usize, PolygonId)| PolygonSum { polygon, front: at(2 * k + 1), back: at(2 * k + 2) };
+        Sums { polygons: self.visible.into_iter().enumerate().map(of).collect(), background: at(0) }
     }
 }
 
@@ -178,8 +206,10 @@ impl Cell<'_> {
 
     /// Its form factor; `None` if the domain has no normal. Never negative.
     pub fn form_factor(self) -> Option<f64> {
-        let normal = UnitDirection::new(self.image().normal()?)?;
-        Some(form_factor_of_rounded(&self.boundary().collect::<Vec<_>>(), normal))
+        let receiver = Receiver::new(self.image().normal()?);
+        let corners: Vec<DVec3> =
+            self.boundary().chain(self.boundary().take(1)).map(|corner| receiver.turned(corner)).collect();
+        Some(Receiver::factor(&corners))
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::bsp::Skeleton;
 use crate::contour::directions::{CircleId, Directions};
 use crate::contour::image::{CellId, ContourImage};
-use crate::contour::polygon::{Knife, PolygonArc, Sides};
+use crate::contour::polygon::{Knife, PolygonArc, Sides, Span};
 use crate::exact::Sign;
 use crate::scene::{PolygonId, Side};
 use glam::DVec3;
@@ -37,8 +37,7 @@ pub(crate) struct Face {
     /// The cell that it is, or is part of.
     pub(crate) cell: Option<CellId>,
     pub(crate) part: Part,
-    start: u32,
-    len: u32,
+    boundary: Span,
 }
 
 impl Face {
@@ -73,9 +72,8 @@ impl<'a> Mosaic<'a> {
                 let cell = image.cell(id);
                 Label { polygon: cell.polygon(), side: cell.side() }
             });
-            let start = arcs.len() as u32;
-            arcs.extend_from_slice(image.tree.boundary(leaf));
-            faces.push(Face { label, cell, part: Part::Front, start, len: arcs.len() as u32 - start });
+            let boundary = Span::keep(image.tree.boundary(leaf), &mut arcs);
+            faces.push(Face { label, cell, part: Part::Front, boundary });
         }
         let skeleton = image.skeleton();
         Self { skeleton, directions: Cow::Borrowed(&image.tree.directions), faces, arcs, knife: Knife::default() }
@@ -83,7 +81,7 @@ impl<'a> Mosaic<'a> {
 
     /// The sides of a face, counter-clockwise seen from outside of the sphere.
     pub(crate) fn boundary(&self, face: &Face) -> &[PolygonArc] {
-        &self.arcs[face.start as usize..(face.start + face.len) as usize]
+        &self.arcs[face.boundary.range()]
     }
 
     /// Takes in the great circle that is perpendicular to `normal`, as it is.
@@ -94,28 +92,19 @@ impl<'a> Mosaic<'a> {
     /// Cuts faces at a great circle, exactly; `mark` is told on which side each of the selected ones, or each part of
     /// them, lies.
     pub(crate) fn cut(&mut self, circle: CircleId, selected: impl Fn(&Face) -> bool, mark: impl Fn(&mut Face, Sign)) {
-        let [mut negative, mut positive] = [Vec::new(), Vec::new()];
         for k in 0..self.faces.len() {
             let face = self.faces[k];
             if !selected(&face) {
                 continue;
             }
-            let range = face.start as usize..(face.start + face.len) as usize;
-            let boundary = &self.arcs[range];
-            match self.knife.classify(self.skeleton, &self.directions, boundary, circle) {
+            match self.knife.classify(self.skeleton, &self.directions, &self.arcs[face.boundary.range()], circle) {
                 Sides { negative: false, .. } => mark(&mut self.faces[k], Sign::Positive),
                 Sides { positive: false, .. } => mark(&mut self.faces[k], Sign::Negative),
                 Sides { .. } => {
-                    negative.clear();
-                    positive.clear();
                     let directions = self.directions.to_mut();
                     let none = |_: &mut _, _: &mut _, _| None;
-                    self.knife.cut(self.skeleton, directions, boundary, circle, none, &mut negative, &mut positive);
-                    let [mut below, mut above] = [&negative, &positive].map(|part| {
-                        let start = self.arcs.len() as u32;
-                        self.arcs.extend_from_slice(part);
-                        Face { start, len: part.len() as u32, ..face }
-                    });
+                    let parts = self.knife.cut(self.skeleton, directions, &mut self.arcs, face.boundary, circle, none);
+                    let [mut below, mut above] = parts.map(|boundary| Face { boundary, ..face });
                     mark(&mut below, Sign::Negative);
                     mark(&mut above, Sign::Positive);
                     self.faces[k] = below;

@@ -29,7 +29,7 @@ impl ContourTree {
         }
         // Children have higher numbers than their parents.
         for k in (0..self.nodes.len()).rev() {
-            let (negative, positive) = (self.nodes[k].negative, self.nodes[k].positive);
+            let (negative, positive) = (self.nodes[k].negative(), self.nodes[k].positive());
             self.nodes[k].far = self.link_far(negative).max(self.link_far(positive));
         }
     }

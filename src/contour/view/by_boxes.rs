@@ -10,8 +10,8 @@ use super::super::viewpoint::Viewpoint;
 use super::super::windows::Pane;
 use super::space::Buffers;
 use super::{Sight, ViewError, ViewOptions, ViewSpace};
-use crate::bsp::{Bounds, FragmentSide, LineId};
-use crate::bvh::{Content, Hierarchy, Panel, SceneBvh, vertex};
+use crate::bsp::{Bounds, FragmentSide};
+use crate::bvh::{Content, Hierarchy, Panel, Parts, SceneBvh, vertex};
 use crate::exact::{SeenBox, SeenPlane, Sign, U};
 use crate::scene::{PieceId, PieceRef, PlaneId, Side, VertexId};
 use glam::DVec3;
@@ -79,7 +79,7 @@ struct Walk<'a> {
     sight: Sight<'a>,
     creases: FxHashMap<[PlaneId; 2], CircleId>,
     /// Leaves in which a panel is seen, its pieces not told apart yet.
-    parts: Vec<(u32, u32)>,
+    parts: Vec<(u32, Parts)>,
     /// Pieces that were put in as windows, ascending.
     windows: Vec<PieceId>,
 }
@@ -174,7 +174,7 @@ impl Walk<'_> {
         let Self { hierarchy, sight, creases, windows, .. } = self;
         let eye = sight.eye;
         let sides = hierarchy.panels.sides(panel);
-        let Panel { piece: id, halves, bounds, .. } = hierarchy.panels.panel(panel);
+        let Panel { piece: id, parts, bounds, .. } = hierarchy.panels.panel(panel);
         let piece = hierarchy.scene.piece(*id);
         let Some(shown) = hierarchy.skeleton.shown_side(piece, eye) else { return Outcome::Done };
         if hierarchy.is_inside(*id, shown, eye) {
@@ -189,7 +189,7 @@ impl Walk<'_> {
         let (skeleton, plane) = (&hierarchy.skeleton, piece.plane_id());
         let plane = SeenPlane::new(skeleton.approx_normal(plane), skeleton.anchor(plane), eye);
         let filler = Filler { piece: *id, near, far, plane: Some(plane) };
-        let is_one = halves.is_none();
+        let is_one = matches!(parts, Parts::One(_));
         let mut rivals = Rivals {
             hierarchy,
             eye,
@@ -209,7 +209,7 @@ impl Walk<'_> {
         contour.insert(&hierarchy.skeleton, top, polygon, &seen, &filler, judge, work);
         let outcome = rivals.outcome;
         if !is_one {
-            self.parts.extend(self.sight.buffers.work.filled.iter().map(|&leaf| (leaf, panel)));
+            self.parts.extend(self.sight.buffers.work.filled.iter().map(|&leaf| (leaf, *parts)));
             self.tell_apart(shown);
         }
         outcome
@@ -218,24 +218,25 @@ impl Walk<'_> {
     /// Cuts the leaves in which panels are seen along the edges between their pieces.
     fn tell_apart(&mut self, shown: Side) {
         let panels = &self.hierarchy.panels;
-        while let Some((leaf, panel)) = self.parts.pop() {
-            let Panel { piece, halves, .. } = panels.panel(panel);
-            let Some(halves) = halves else {
-                self.sight.contour.rename(leaf, *piece);
-                continue;
+        while let Some((leaf, parts)) = self.parts.pop() {
+            let seam = match parts {
+                Parts::One(piece) => {
+                    self.sight.contour.rename(leaf, piece);
+                    continue;
+                }
+                Parts::Two(seam) => panels.seam(seam),
             };
-            let half = self.sight.half_sphere(self.hierarchy.scene.piece(*piece), halves.seam, shown);
-            let Sight { contour, buffers: Buffers { work, circles, directions: numbers, .. }, skeleton, .. } =
-                &mut self.sight;
+            let half = self.sight.along_edge(seam.side, shown);
+            let Sight { contour, buffers: Buffers { work, directions: numbers, .. }, skeleton, .. } = &mut self.sight;
             // Where the leaf reaches the panel's own boundary, the seam ends in a vertex of the scene.
             let known = |directions: &mut Directions, cache: &mut ExactCache, arc: PolygonArc| {
-                let is_met = |line: LineId| circles.get(line.0) == Some(arc.along.circle().0);
-                let end = halves.ends.iter().find(|end| is_met(end.lines[0]) || is_met(end.lines[1]))?;
+                let line = directions.line(arc.along.circle())?;
+                let end = seam.ends.iter().find(|end| end.lines.contains(&line))?;
                 let make = || directions.push_point(skeleton, end.point, cache).0;
                 Some(DirectionId(numbers.of(end.point.0, make)))
             };
             let [first, second] = contour.cut_leaf(skeleton, leaf, half, known, work);
-            let [one, other] = halves.panels;
+            let [one, other] = seam.halves;
             if let Some(leaf) = first {
                 self.parts.push((leaf, one));
             }

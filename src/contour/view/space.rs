@@ -88,12 +88,6 @@ impl Numbers {
         }
     }
 
-    /// The number of a thing, if it has one.
-    #[inline]
-    pub(super) fn get(&self, thing: u32) -> Option<u32> {
-        self.of[thing as usize].checked_sub(1)
-    }
-
     /// The number of a thing, made if it has none.
     #[inline]
     pub(super) fn of(&mut self, thing: u32, make: impl FnOnce() -> u32) -> u32 {
