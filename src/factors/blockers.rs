@@ -20,12 +20,9 @@ pub(super) struct Around {
 
 impl Around {
     pub(super) fn of(facet: u32, facets: &Facets) -> Self {
-        let this = &facets.facets[facet as usize];
-        let lies = |other: u32| {
-            let other = &facets.facets[other as usize];
-            (Lies::of(&other.ring, this.spanning), Lies::of(&this.ring, other.spanning))
-        };
-        let (facets, own) = (0..facets.facets.len() as u32).map(lies).unzip();
+        let all = 0..facets.facets.len() as u32;
+        let lies = all.map(|other| (facets.lies(other, facet), facets.lies(facet, other)));
+        let (facets, own) = lies.unzip();
         Self { facet, facets, own }
     }
 
@@ -134,7 +131,6 @@ impl Blockers<'_> {
 
     /// The facets that may block light between an element and a whole facet.
     fn candidates(&self, around: &Around, from: &Element, facet: u32, shaft: &Shaft) -> Vec<Blocker> {
-        let target = &self.facets.facets[facet as usize];
         let frame = &self.elements.frames[facet as usize];
         let mut candidates = Vec::new();
         for number in self.within(shaft) {
@@ -150,10 +146,10 @@ impl Blockers<'_> {
                 Lies::Across => Lies::of(&from.ring, blocker.spanning),
                 lies => lies,
             };
-            let lies = Lies::of(&target.ring, blocker.spanning);
+            let lies = self.facets.lies(facet, number);
             // What is behind the facet, or in its plane, hides nothing of it.
-            let is_behind = || matches!(Lies::of(&blocker.ring, target.spanning), Lies::Behind | Lies::On);
-            if !own.is_beside(lies) && !is_behind() && !shaft.excludes(&blocker.ring) {
+            let is_behind = matches!(self.facets.lies(number, facet), Lies::Behind | Lies::On);
+            if !own.is_beside(lies) && !is_behind && !shaft.excludes(&blocker.ring) {
                 let what = (number, &blocker.ring[..], blocker.spanning);
                 candidates.push(Blocker::between(&from.ring, [own, lies], frame, what));
             }

@@ -2,7 +2,7 @@
 
 use super::ExchangeError;
 use super::blockers::{Around, Blockers, Seen};
-use super::cubature::{Cubature, Division, Part, Scratch};
+use super::cubature::{Cubature, Division, Scratch};
 use super::element::{Element, Elements};
 use super::hidden::{HiddenSpace, Target};
 use super::row::Share;
@@ -19,10 +19,7 @@ use std::ops::Range;
 const OF_TOLERANCE: f64 = 0.05;
 /// With more facets between than this, views are cheaper than cutting off shadows one by one.
 const MOST_BETWEEN: usize = 64;
-/// The views that all entries share are taken at more points until a row closes within so many tolerances: less than that is missing in entries that no view
-/// has shown.
-const CLOSE: f64 = 1.0;
-/// Though in no more parts than 4 to this power.
+/// Views are taken in no more parts than 4 to this power.
 const MOST_HALVINGS: u32 = 3;
 
 /// Memory that is used again from row to row.
@@ -34,9 +31,6 @@ pub(super) struct RowSpace {
     single: Scratch,
     around: Option<Around>,
     found: Found,
-    /// Facets whose elements are told apart.
-    is_classified: Vec<bool>,
-    classified: Vec<u32>,
     /// What each column gets.
     shares: Vec<Share>,
     columns: Vec<u32>,
@@ -67,8 +61,6 @@ impl RowSpace {
             single: Scratch::new(1),
             around: None,
             found,
-            is_classified: vec![false; elements.frames.len()],
-            classified: Vec::new(),
             shares: vec![Share::default(); columns],
             columns: Vec::new(),
         }
@@ -85,10 +77,9 @@ impl RowSpace {
 
     /// Ends a row: what its columns have got, ascending.
     fn take(&mut self) -> Vec<(u32, Share)> {
-        let Self { found, is_classified, classified, shares, columns, .. } = self;
+        let Self { found, shares, columns, .. } = self;
         found.known.drain(..).for_each(|element| found.seen[element as usize] = Seen::Unknown);
         found.facets.clear();
-        classified.drain(..).for_each(|facet| is_classified[facet as usize] = false);
         columns.sort_unstable();
         columns.dedup();
         columns.drain(..).map(|column| (column, std::mem::take(&mut shares[column as usize]))).collect()
@@ -100,8 +91,6 @@ impl RowSpace {
 pub(super) struct Effort {
     /// The absolute error allowed of each factor.
     pub(super) tolerance: f64,
-    /// Whether all that may be seen is looked for, and not only what some views show.
-    pub(super) is_thorough: bool,
     /// Whether views are taken at many points near the sides.
     pub(super) towards_sides: bool,
 }
@@ -135,52 +124,33 @@ impl ElementRows<'_> {
             _ => Around::of(from.facet, self.blockers.facets),
         };
         space.around = Some(around);
-        let mut facets = Vec::new();
-        self.looker.look(&mut space.look, from.facet, from.centre, |_| false, |_, _| (), |facet| facets.push(facet))?;
-        if effort.is_thorough {
-            facets = self.in_front(space);
-        }
         let allowed = tolerance * (1.0 - OF_TOLERANCE);
         let mut division = if effort.towards_sides { Division::TowardsSides } else { Division::None };
+        self.classify(number, tolerance * OF_TOLERANCE, space);
+        self.integrate_all(number, allowed, space);
+        if is_complete(space, tolerance) {
+            return Ok(());
+        }
+        // What is left: backs, the background, and what too much may be in front of.
         loop {
-            self.classify(number, std::mem::take(&mut facets), tolerance * OF_TOLERANCE, space);
-            if effort.is_thorough {
-                self.integrate_all(number, allowed, space);
-            }
-            if is_complete(space, tolerance) {
-                return Ok(());
-            }
             let mut means = self.cubature(from, allowed, space).fixed(division)?;
-            let is_over = |part: &Part| part.error > allowed;
-            facets = self.facets_of(means.parts.iter().filter(|part| is_over(part)).map(|part| part.column), space);
-            if !facets.is_empty() {
-                continue;
-            }
-            means.parts.retain(|part| {
-                let is_local = is_over(part) && self.is_known(part.column, space);
-                if is_local {
-                    self.integrate(number, part.column, allowed, space);
-                }
-                !is_local
-            });
-            if means.parts.iter().any(is_over) {
+            if means.parts.iter().any(|part| part.error > allowed) {
                 means = self.cubature(from, allowed, space).adaptive(self.most_views)?;
             }
             let rest = means.parts.iter().map(|part| Share { factor: part.value.max(0.0), error: part.error });
-            let (sum, error) =
-                total(space.columns.iter().map(|&column| space.shares[column as usize]).chain(rest.clone()));
-            let is_closed = (sum - 1.0).abs() <= error.min(CLOSE * tolerance);
+            let known = space.columns.iter().map(|&column| space.shares[column as usize]);
+            let (sum, error) = total(known.chain(rest.clone()));
             let next = match division {
                 Division::None => Some(Division::Alike(0)),
                 Division::Alike(halvings) if halvings < MOST_HALVINGS => Some(Division::Alike(halvings + 1)),
                 Division::Alike(_) | Division::TowardsSides => None,
             };
-            let Some(finer) = next.filter(|_| !is_closed) else {
+            let Some(finer) = next.filter(|_| (sum - 1.0).abs() > error) else {
                 let columns: Vec<u32> = means.parts.iter().map(|part| part.column).collect();
                 columns.into_iter().zip(rest).for_each(|(column, share)| space.add(column, share));
                 return Ok(());
             };
-            // What few views missed.
+            // Few views have missed something.
             division = finer;
         }
     }
@@ -217,21 +187,16 @@ impl ElementRows<'_> {
         let RowSpace { look, scratch, found, .. } = space;
         let takes_views = |element: u32| matches!(found.seen[element as usize], Seen::Partly | Seen::Unknown);
         let look = move |point: DVec3, add: &mut dyn FnMut(u32, f64)| {
-            self.looker.look(look, from.facet, point, takes_views, add, |_| ())
+            self.looker.look(look, from.facet, point, takes_views, add)
         };
         Cubature { ring: &from.ring, area: from.area, allowed, scratch, look }
     }
 
-    /// Finds the elements of facets that are seen wholly, which get their share, or never, and what may be between otherwise.
-    fn classify(&self, number: u32, mut facets: Vec<u32>, tolerance: f64, space: &mut RowSpace) {
+    /// Finds the elements that are seen wholly, which get their share, or never, and what may be between otherwise.
+    fn classify(&self, number: u32, tolerance: f64, space: &mut RowSpace) {
         let elements = self.blockers.elements;
         let from = &elements.elements[number as usize];
-        facets.sort_unstable();
-        facets.dedup();
-        let start = space.found.known.len();
-        for facet in facets {
-            space.is_classified[facet as usize] = true;
-            space.classified.push(facet);
+        for facet in self.in_front(space) {
             let RowSpace { around: Some(around), found, .. } = &mut *space else { return };
             self.blockers.classify(around, from, facet, |element, seen, between| {
                 let first = found.facets.len() as u32;
@@ -241,7 +206,7 @@ impl ElementRows<'_> {
                 found.known.push(element);
             });
         }
-        for k in start..space.found.known.len() {
+        for k in 0..space.found.known.len() {
             let element = space.found.known[k];
             if space.found.seen[element as usize] == Seen::Wholly {
                 let Share { factor, error } = self.exchange(number, element, tolerance, space);
@@ -249,14 +214,6 @@ impl ElementRows<'_> {
                 space.add(elements.elements[element as usize].patch, share);
             }
         }
-    }
-
-    /// The facets of patches that are not classified yet.
-    fn facets_of(&self, columns: impl Iterator<Item = u32>, space: &RowSpace) -> Vec<u32> {
-        let elements = self.blockers.elements;
-        let patches = columns.filter_map(|column| elements.of_patch.get(column as usize));
-        let facets = patches.flatten().map(|&element| elements.elements[element as usize].facet);
-        facets.filter(|&facet| !space.is_classified[facet as usize]).collect()
     }
 
     /// True if all that may hide parts of a patch is known, and it is seen from its front only.

@@ -16,9 +16,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// Rows that are in memory at the same time.
 const CHUNK: usize = 256;
-/// A row whose residue is larger than the estimates of its errors is computed anew, thoroughly: to these parts of the tolerance, and with or without many
-/// views from near its sides.
-const ANEW: [(f64, bool); 3] = [(1.0, false), (1.0, true), (0.1, true)];
+/// How a row is computed, and how anew as long as its residue is larger than the estimates of its errors: to these parts of the tolerance, and with or without
+/// many views from near its sides.
+const ATTEMPTS: [(f64, bool); 3] = [(1.0, false), (1.0, true), (0.1, true)];
 
 /// Form factors between the patches of a scene.
 ///
@@ -121,11 +121,8 @@ impl Exchange {
 
     fn row_in(&self, patch: usize, space: &mut RowSpace) -> Result<Row, ExchangeError> {
         let mut failure = None;
-        let tolerance = self.options.tolerance;
-        let first = Effort { tolerance, is_thorough: false, towards_sides: false };
-        let anew =
-            ANEW.map(|(part, towards_sides)| Effort { tolerance: tolerance * part, is_thorough: true, towards_sides });
-        for effort in std::iter::once(first).chain(anew) {
+        for (part, towards_sides) in ATTEMPTS {
+            let effort = Effort { tolerance: self.options.tolerance * part, towards_sides };
             let mut row = self.raw_row(patch, effort, space)?;
             if row.closure_raw == 0.0 {
                 return Ok(row);
@@ -135,12 +132,7 @@ impl Exchange {
                     row.entries.retain(|entry| entry.share.factor > 0.0);
                     return Ok(row);
                 }
-                Err(too_large) => {
-                    if std::env::var_os("NV").is_some() {
-                        eprintln!("{patch} {effort:?} {too_large:?}");
-                    }
-                    failure = Some(too_large)
-                }
+                Err(too_large) => failure = Some(too_large),
             }
         }
         let TooLarge { residue, estimates } = failure.unwrap_or(TooLarge { residue: 0.0, estimates: 0.0 });

@@ -3,6 +3,7 @@
 //! What a view costs is what there is to tell apart in it (docs/performance.md). Between patches of one facet there is nothing to tell
 //! apart for the eye: the part of a facet that is seen is divided among its patches afterwards, in its plane.
 
+use super::shaft::Lies;
 use crate::bvh::{self, SceneBvh, Solid};
 use crate::contour::SceneOrder;
 use crate::scene::{FaceSpec, Material, PieceId, Scene, SceneError};
@@ -17,7 +18,12 @@ pub(super) struct Facets {
     pub(super) of_piece: Vec<u32>,
     /// The power of two by which all coordinates are multiplied, so that squares of lengths neither overflow nor vanish.
     pub(super) scale: f64,
+    /// How each facet lies to the plane of each, row by row of planes, if there are few enough to keep that.
+    lies: Vec<Lies>,
 }
+
+/// So many facets are told apart once and for all: 4 MB.
+const FEW: usize = 2048;
 
 pub(super) struct Facet {
     /// Its corners, counter-clockwise seen from its front.
@@ -64,7 +70,21 @@ impl Facets {
             builder.add_face(FaceSpec { rings: vec![ring], object, material });
         }
         let scene = builder.build()?;
-        Ok(Self { order: SceneBvh::build(&scene).into(), facets, of_piece, scale })
+        let planes = if facets.len() <= FEW { &facets[..] } else { &[] };
+        let mut lies = Vec::with_capacity(planes.len() * planes.len());
+        for plane in planes {
+            lies.extend(facets.iter().map(|facet| Lies::of(&facet.ring, plane.spanning)));
+        }
+        Ok(Self { order: SceneBvh::build(&scene).into(), facets, of_piece, scale, lies })
+    }
+}
+
+impl Facets {
+    /// How a facet lies to the plane of another one.
+    pub(super) fn lies(&self, facet: u32, plane: u32) -> Lies {
+        let place = plane as usize * self.facets.len() + facet as usize;
+        let other = || Lies::of(&self.facets[facet as usize].ring, self.facets[plane as usize].spanning);
+        self.lies.get(place).copied().unwrap_or_else(other)
     }
 }
 

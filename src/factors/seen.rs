@@ -51,7 +51,7 @@ impl Columns {
 
 impl Looker<'_> {
     /// Looks from the point of a facet's front nearest to `point` and calls `share` with columns and what of the point's light they get, those of
-    /// elements for which `is_wanted` is false left out; `facet_seen` is called with every facet of which the front is seen.
+    /// elements for which `is_wanted` is false left out.
     pub(super) fn look(
         &self,
         space: &mut LookSpace,
@@ -59,7 +59,6 @@ impl Looker<'_> {
         point: DVec3,
         is_wanted: impl Fn(u32) -> bool,
         mut share: impl FnMut(u32, f64),
-        mut facet_seen: impl FnMut(u32),
     ) -> Result<(), ExchangeError> {
         let scene = self.facets.order.scene();
         let piece: PieceId = scene.polygon(PolygonId(facet)).pieces().next().map_or(PieceId(0), |piece| piece.id());
@@ -82,9 +81,6 @@ impl Looker<'_> {
                 continue;
             }
             let target = seen.0;
-            if side == Side::Front {
-                facet_seen(target);
-            }
             let of_facet = &self.elements.of_facet[target as usize];
             // What is seen from behind is never left out.
             let wanted = |element: u32| side == Side::Back || is_wanted(element);

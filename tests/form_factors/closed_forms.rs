@@ -1,58 +1,42 @@
-//! Patches with nothing between.
+//! Patches whose factors are known.
 
+use super::cases::{all, cuboid, scene_of};
 use super::references::{discs, graded, lambert, mean, opposed, perpendicular};
-use super::{TOLERANCES, all_rows, cuboid, exchange, factor, rectangle, scene_of};
+use super::{TOLERANCES, all_rows, exchange, factor};
 use glam::DVec3;
 use nusselt::factors::PatchPlan;
 use std::f64::consts::{PI, TAU};
 
-/// Both ways, with areas, to every tolerance.
-fn check(polygons: &[Vec<[f64; 3]>], expected: f64, area_ratio: f64) {
-    for tolerance in TOLERANCES {
-        let rows = all_rows(&exchange(&scene_of(polygons), PatchPlan::Polygons, tolerance));
-        let [there, back] = [factor(&rows[0], 1), factor(&rows[1], 0)];
-        assert!((there - expected).abs() <= tolerance, "{tolerance:e}: {there} instead of {expected}");
-        assert!((back - expected * area_ratio).abs() <= tolerance, "{tolerance:e}: {back} back");
-        for row in &rows {
-            assert!((row.sum() - 1.0).abs() <= 1e-12, "{row:?}");
-            assert!(row.entries.iter().all(|entry| entry.share.error <= tolerance), "{row:?}");
+#[test]
+fn known_factors_are_met_to_every_tolerance_both_ways() {
+    for case in all() {
+        for tolerance in TOLERANCES {
+            let exchange = exchange(&case.scene, PatchPlan::Polygons, tolerance);
+            let rows = all_rows(&exchange);
+            let column = case.column as usize;
+            let ratio = exchange.patches()[case.row].area / exchange.patches()[column].area;
+            let [there, back] = [factor(&rows[case.row], case.column), factor(&rows[column], case.row as u32)];
+            let name = &case.name;
+            assert!(
+                (there - case.reference).abs() <= tolerance,
+                "{name}, {tolerance:e}: {there} not {}",
+                case.reference
+            );
+            assert!((back - case.reference * ratio).abs() <= tolerance, "{name}, {tolerance:e}: {back} back");
+            for row in &rows {
+                assert!((row.sum() - 1.0).abs() <= 1e-12, "{name}: {row:?}");
+                assert!(row.entries.iter().all(|entry| entry.share.error <= tolerance), "{name}: {row:?}");
+            }
         }
     }
 }
 
 #[test]
-fn opposed_rectangles_are_those_of_the_catalogue_down_to_a_gap_of_a_thousandth() {
-    for (a, b, c) in [(1.0, 1.0, 1.0), (2.0, 0.5, 0.7), (1.0, 3.0, 0.1), (1.0, 1.0, 0.001), (1.0, 1.0, 30.0)] {
-        let below = rectangle([0.; 3], [a, 0., 0.], [0., b, 0.]);
-        let above = rectangle([0., 0., c], [0., b, 0.], [a, 0., 0.]);
-        check(&[below, above], opposed(a, b, c), 1.0);
-    }
-}
-
-#[test]
-fn rectangles_at_a_right_angle_are_those_of_the_catalogue() {
-    for (w, h, l) in [(1.0, 1.0, 1.0), (2.0, 0.5, 3.0), (0.1, 4.0, 1.0), (1.0, 0.01, 1.0)] {
-        let floor = rectangle([0.; 3], [w, 0., 0.], [0., l, 0.]);
-        let wall = rectangle([0.; 3], [0., l, 0.], [0., 0., h]);
-        check(&[floor, wall], perpendicular(w, h, l), w / h);
-    }
-}
-
-#[test]
-fn wedges_that_touch_along_an_edge_match_cubature_that_is_graded_towards_it() {
-    for degrees in [30.0_f64, 60.0, 90.0, 120.0, 150.0] {
-        let (sin, cos) = degrees.to_radians().sin_cos();
-        let floor = rectangle([0.; 3], [1.0, 0., 0.], [0., 1.5, 0.]);
-        let leaf = rectangle([0.; 3], [0., 1.5, 0.], [0.8 * cos, 0., 0.8 * sin]);
-        let target: Vec<DVec3> = leaf.iter().rev().map(|&p| DVec3::from(p)).collect();
-        let places = graded();
-        let expected = mean(&places, &places, |u, v| lambert(DVec3::new(u, 1.5 * v, 0.0), DVec3::Z, &target).abs());
-        if degrees == 90.0 {
-            // The reference itself.
-            assert!((expected - perpendicular(1.0, 0.8, 1.5)).abs() < 1e-13);
-        }
-        check(&[floor, leaf], expected, 1.0 / 0.8);
-    }
+fn graded_cubature_meets_the_closed_form() {
+    let target = [[0., 0., 0.], [0., 0., 0.8], [0., 1.5, 0.8], [0., 1.5, 0.]].map(DVec3::from);
+    let places = graded();
+    let found = mean(&places, &places, |u, v| lambert(DVec3::new(u, 1.5 * v, 0.0), DVec3::Z, &target).abs());
+    assert!((found - perpendicular(1.0, 0.8, 1.5)).abs() < 1e-13);
 }
 
 #[test]

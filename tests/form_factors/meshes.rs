@@ -1,6 +1,7 @@
 //! Meshes of polygons.
 
-use super::{cuboid, exchange, rectangle, scene_of};
+use super::cases::{cuboid, rectangle, scene_of};
+use super::exchange;
 use nusselt::factors::PatchPlan;
 use nusselt::scene::PolygonId;
 

@@ -81,3 +81,41 @@ pub(crate) fn graded() -> Vec<f64> {
     let high = low.iter().rev().skip(1).map(|x| 1.0 - x);
     low.iter().copied().chain(high).collect()
 }
+
+/// A rectangle in a plane of constant z: x from, x to, y from, y to.
+type Extent = [f64; 4];
+
+fn corners([x0, x1, y0, y1]: Extent, z: f64) -> [DVec3; 4] {
+    [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(|[x, y]| DVec3::new(x, y, z))
+}
+
+/// From a rectangle at height 0 to one at height `top`, with one at height `middle` between, all parallel to the axes: the shadow from each point
+/// is a rectangle again, and it comes over the edges of the receiver where the emitter's points are on known lines.
+pub(crate) fn behind_a_plate(from: Extent, blocker: Extent, middle: f64, to: Extent, top: f64) -> f64 {
+    let ratio = top / middle;
+    let places = |k: usize| {
+        let (low, high) = (from[2 * k], from[2 * k + 1]);
+        // x + (b - x) ratio = t.
+        let crossing = |b: f64, t: f64| (b * ratio - t) / (ratio - 1.0);
+        let mut places = vec![low, high];
+        for b in &blocker[2 * k..2 * k + 2] {
+            places.extend(to[2 * k..2 * k + 2].iter().map(|&t| crossing(*b, t)).filter(|p| (low..high).contains(p)));
+        }
+        places.sort_by(f64::total_cmp);
+        // In four parts each, so that the rule of 10 points has all its digits.
+        let quarters = |pair: &[f64]| [0.0, 0.25, 0.5, 0.75].map(|t| pair[0] + (pair[1] - pair[0]) * t);
+        let mut fine: Vec<f64> = places.windows(2).flat_map(quarters).collect();
+        fine.push(high);
+        fine.iter().map(|p| (p - low) / (high - low)).collect::<Vec<f64>>()
+    };
+    let whole = corners(to, top);
+    mean(&places(0), &places(1), |u, v| {
+        let x = DVec3::new(from[0] + u * (from[1] - from[0]), from[2] + v * (from[3] - from[2]), 0.0);
+        let shadow: Extent = std::array::from_fn(|k| {
+            let (x, b) = (x[k / 2], blocker[k]);
+            (x + (b - x) * ratio).clamp(to[k / 2 * 2], to[k / 2 * 2 + 1])
+        });
+        let visible = lambert(x, DVec3::Z, &whole) - lambert(x, DVec3::Z, &corners(shadow, top));
+        visible.abs()
+    })
+}

@@ -1,6 +1,7 @@
 //! What holds of all rows.
 
-use super::{all_rows, cuboid, exchange, factor, rectangle, scene_of, scenes};
+use super::cases::{cuboid, rectangle, scene_of};
+use super::{all_rows, city, exchange, factor};
 use glam::DVec3;
 use nusselt::contour::{Domain, SceneOrder, ViewOptions, Viewpoint};
 use nusselt::factors::{Exchange, ExchangeError, ExchangeOptions, PatchPlan, Row, Sides};
@@ -40,7 +41,7 @@ fn by_many_views(scene: &Scene, order: &SceneOrder, polygon: PolygonId, side: us
 
 #[test]
 fn entries_of_a_city_are_within_the_tolerance_of_many_views() {
-    let scene = scenes::city(3).expect("a city");
+    let scene = city::city(3).expect("a city");
     let order = SceneOrder::new(&scene);
     let tolerance = 1e-3;
     let exchange = exchange(&scene, PatchPlan::Polygons, tolerance);
@@ -58,7 +59,7 @@ fn entries_of_a_city_are_within_the_tolerance_of_many_views() {
 
 #[test]
 fn rows_are_the_same_bits_for_any_number_of_threads_and_in_any_order() {
-    let scene = scenes::city(2).expect("a city");
+    let scene = city::city(2).expect("a city");
     let exchange = exchange(&scene, PatchPlan::Polygons, 1e-3);
     let in_order = |threads: usize| {
         let mut rows = Vec::new();
