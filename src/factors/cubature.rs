@@ -23,11 +23,17 @@ pub(super) struct Means {
     pub(super) parts: Vec<Part>,
 }
 
-/// What is summed over the points of a rule.
-const SUMS: usize = 6;
+/// What is summed over the points of a rule: the rule itself, three others of lower degrees, differences in either direction, and what values next to the middles of
+/// sides and to corners differ by from what the others foretell.
+const SUMS: usize = 14;
+const SIDES: usize = 6;
+const CORNERS: usize = 10;
 type Weights = [f64; SUMS];
 
-/// A rule on the unit square: points, with weights for the rule itself, for two or three others of lower degrees, and for differences in either direction.
+/// Where values next to sides are taken, of -1 to 1: on the sides themselves one may be in the plane of what is seen.
+const BESIDE: f64 = 0.999;
+
+/// A rule on the unit square.
 struct Rule {
     points: Vec<([f64; 2], Weights)>,
 }
@@ -35,36 +41,69 @@ struct Rule {
 impl Rule {
     /// Degree 3, against the middle.
     fn first() -> Self {
-        let g = 0.5 / 3.0_f64.sqrt();
-        let corners = [[-g, -g], [g, -g], [-g, g], [g, g]];
-        let mut points = vec![([0.5; 2], [0.0, 1.0, 1.0, 1.0, 0.0, 0.0])];
-        points.extend(corners.map(|[u, v]| ([0.5 + u, 0.5 + v], [0.25, 0.0, 0.0, 0.0, 0.0, 0.0])));
-        Self { points }
+        let g = 1.0 / 3.0_f64.sqrt();
+        let mut rule = Self { points: Vec::new() };
+        rule.add([0.0, 0.0], &[(1, 1.0), (2, 1.0), (3, 1.0)]);
+        for [u, v] in [[-g, -g], [g, -g], [-g, g], [g, g]] {
+            rule.add([u, v], &[(0, 0.25)]);
+        }
+        rule
     }
 
     /// Degrees 7, 5, and 3 twice.
     fn genz_malik() -> Self {
         let (l2, l3, l5) = ((9.0_f64 / 70.0).sqrt(), 0.9_f64.sqrt(), (9.0_f64 / 19.0).sqrt());
         let ratio = l2 * l2 / (l3 * l3);
-        let at = |u: f64, v: f64| [0.5 + 0.5 * u, 0.5 + 0.5 * v];
-        let middle = 2.0 * (ratio - 1.0);
         // Of degree 3: four points that have a mean square of 1 / 3 with the middle.
         let (cross, square) = (1.0 / (6.0 * l3 * l3), 1.0 / (12.0 * l5 * l5));
-        let weights = [-3816.0 / 19683.0, -971.0 / 729.0, 1.0 - 4.0 * cross, 1.0 - 4.0 * square, middle, middle];
-        let mut points = vec![(at(0.0, 0.0), weights)];
+        let mut rule = Self { points: Vec::new() };
+        let middle = [-3816.0 / 19683.0, -971.0 / 729.0, 1.0 - 4.0 * cross, 1.0 - 4.0 * square];
+        let bend = 2.0 * (ratio - 1.0);
+        rule.add([0.0, 0.0], &[(0, middle[0]), (1, middle[1]), (2, middle[2]), (3, middle[3]), (4, bend), (5, bend)]);
         for sign in [-1.0, 1.0] {
-            let near = [980.0 / 6561.0, 245.0 / 486.0, 0.0, 0.0];
-            points.push((at(sign * l2, 0.0), [near[0], near[1], near[2], near[3], 1.0, 0.0]));
-            points.push((at(0.0, sign * l2), [near[0], near[1], near[2], near[3], 0.0, 1.0]));
-            let far = [1020.0 / 19683.0, 65.0 / 1458.0, cross, 0.0];
-            points.push((at(sign * l3, 0.0), [far[0], far[1], far[2], far[3], -ratio, 0.0]));
-            points.push((at(0.0, sign * l3), [far[0], far[1], far[2], far[3], 0.0, -ratio]));
+            for axis in 0..2 {
+                let at = |t: f64| if axis == 0 { [t, 0.0] } else { [0.0, t] };
+                rule.add(at(sign * l2), &[(0, 980.0 / 6561.0), (1, 245.0 / 486.0), (4 + axis, 1.0)]);
+                rule.add(at(sign * l3), &[(0, 1020.0 / 19683.0), (1, 65.0 / 1458.0), (2, cross), (4 + axis, -ratio)]);
+            }
             for other in [-1.0, 1.0] {
-                points.push((at(sign * l3, other * l3), [200.0 / 19683.0, 25.0 / 729.0, 0.0, 0.0, 0.0, 0.0]));
-                points.push((at(sign * l5, other * l5), [6859.0 / 19683.0 / 4.0, 0.0, 0.0, square, 0.0, 0.0]));
+                rule.add([sign * l3, other * l3], &[(0, 200.0 / 19683.0), (1, 25.0 / 729.0)]);
+                rule.add([sign * l5, other * l5], &[(0, 6859.0 / 19683.0 / 4.0), (3, square)]);
             }
         }
-        Self { points }
+        // The fourth-degree polynomials along the axes and the diagonals, at their ends.
+        for (number, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            rule.foretell(SIDES + number, [sign, 0.0], [l2, l3]);
+            rule.foretell(SIDES + 2 + number, [0.0, sign], [l2, l3]);
+            rule.foretell(CORNERS + number, [sign, sign], [l5, l3]);
+            rule.foretell(CORNERS + 2 + number, [sign, -sign], [l5, l3]);
+        }
+        rule
+    }
+
+    /// Adds weights to a point of -1 to 1 squared.
+    fn add(&mut self, [u, v]: [f64; 2], weights: &[(usize, f64)]) {
+        let at = [0.5 + 0.5 * u, 0.5 + 0.5 * v];
+        let known = self.points.iter().position(|&(point, _)| point == at);
+        let place = known.unwrap_or_else(|| {
+            self.points.push((at, [0.0; SUMS]));
+            self.points.len() - 1
+        });
+        for &(sum, weight) in weights {
+            self.points[place].1[sum] += weight;
+        }
+    }
+
+    /// Makes a sum of what the value at the end of a ray through the middle differs by from what those on its line foretell, at 0 and at these
+    /// distances in both directions (Lagrange).
+    fn foretell(&mut self, sum: usize, [u, v]: [f64; 2], [near, far]: [f64; 2]) {
+        let nodes = [-far, -near, 0.0, near, far];
+        for (k, node) in nodes.iter().enumerate() {
+            let others = nodes.iter().enumerate().filter(|&(other, _)| other != k);
+            let weight: f64 = others.map(|(_, other)| (BESIDE - other) / (node - other)).product();
+            self.add([u * node, v * node], &[(sum, weight)]);
+        }
+        self.add([u * BESIDE, v * BESIDE], &[(sum, -1.0)]);
     }
 }
 
@@ -73,10 +112,16 @@ impl Rule {
 /// Where the differences fall off steeply from degree to degree the integrand is smooth, and a part of the larger ones is much more than the
 /// error. Where they do not, it has a kink: all rules are about equally wrong, and one of their differences may be small by chance, along the whole of an edge's
 /// shadow, but hardly two of them.
-fn estimate([value, fifth, third, other]: [f64; 4]) -> f64 {
+///
+/// What casts its shadow on less than a fortieth of the width along a side, or on a corner, is not seen by any of the rules' points: there the
+/// integrand falls off from what they foretell, over half of that width on average.
+fn estimate(sums: &Weights) -> f64 {
+    let [value, fifth, third, other, ..] = *sums;
     let near = (value - fifth).abs();
     let far = (value - third).abs().max((value - other).abs());
-    if near <= 0.02 * far { 0.1 * far } else { (2.0 * near).max(far) }
+    let inside = if near <= 0.02 * far { 0.1 * far } else { (2.0 * near).max(far) };
+    let most = |sums: &[f64]| sums.iter().fold(0.0, |most: f64, sum| most.max(sum.abs()));
+    inside.max(most(&sums[SIDES..CORNERS]) / 40.0).max(most(&sums[CORNERS..]) / 200.0)
 }
 
 /// A quadrilateral with its integrals.
@@ -223,10 +268,10 @@ where
             look(point, &mut |column, value| scratch.add(column, weights.map(|weight| weight * density * value)))?;
         }
         let mut differences = [0.0; 2];
-        let parts = scratch.take().into_iter().map(|(column, [value, fifth, third, other, first, second])| {
-            differences[0] += first.abs();
-            differences[1] += second.abs();
-            Part { column, value, error: estimate([value, fifth, third, other]) }
+        let parts = scratch.take().into_iter().map(|(column, sums)| {
+            differences[0] += sums[4].abs();
+            differences[1] += sums[5].abs();
+            Part { column, value: sums[0], error: estimate(&sums) }
         });
         let parts: Vec<Part> = parts.collect();
         let sizes = [a.distance(b).max(d.distance(c)), a.distance(d).max(b.distance(c))];
@@ -243,7 +288,9 @@ where
     /// Sums over regions, by ascending column.
     fn sum(&mut self, regions: &[Region]) -> Vec<Part> {
         for part in regions.iter().flat_map(|region| &region.parts) {
-            self.scratch.add(part.column, [part.value, part.error, 0.0, 0.0, 0.0, 0.0]);
+            let mut sums = [0.0; SUMS];
+            (sums[0], sums[1]) = (part.value, part.error);
+            self.scratch.add(part.column, sums);
         }
         let sums = self.scratch.take().into_iter();
         sums.map(|(column, [value, error, ..])| Part { column, value, error }).collect()
