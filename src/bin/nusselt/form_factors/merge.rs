@@ -5,7 +5,7 @@ use crate::args::Common;
 use crate::failure::Failure;
 use crate::output::{print, print_json};
 use crate::summary::Lines;
-use nusselt::io::matrix::{FORM_FACTORS_SCHEMA, merge};
+use nusselt::io::matrix::{FORM_FACTORS_SCHEMA, MatrixError, merge};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -27,7 +27,12 @@ pub(super) struct Merge {
 
 impl Merge {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        merge(&self.parts, &self.output).map_err(|error| refused(&self.output, error))?;
+        merge(&self.parts, &self.output).map_err(|error| match error {
+            MatrixError::Io { path, source } if self.parts.contains(&path) => {
+                Failure::Work(format!("cannot read {}: {source}; check the name and the folder", path.display()))
+            }
+            _ => refused(&self.output, error),
+        })?;
         let (parts, output) = (self.parts.len(), self.output.display());
         if common.json {
             return print_json(&json!({ "schema": FORM_FACTORS_SCHEMA, "parts": parts, "wrote": output.to_string() }));

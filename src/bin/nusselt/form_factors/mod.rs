@@ -40,7 +40,8 @@ On two machines, then put together: the same file
 
 /// Compute the matrix of form factors between patches, from the front of each to the fronts of all
 #[derive(clap::Args)]
-#[command(after_help = EXAMPLE, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(after_help = EXAMPLE)]
+#[command(args_conflicts_with_subcommands = true, subcommand_negates_reqs = true, disable_help_subcommand = true)]
 pub(crate) struct FormFactors {
     /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON
     #[arg(required = true)]
@@ -122,6 +123,8 @@ impl FormFactors {
     }
 
     fn prepare(&self, file: &Path, scene: &Scene) -> Result<Exchange, Failure> {
+        options::check_fineness(scene, self.patch)
+            .map_err(|error| Failure::Usage(format!("--patch: {}: {error}", file.display())))?;
         let sides = if self.two_sided { Sides::Both } else { Sides::Fronts };
         let options = ExchangeOptions { tolerance: self.tolerance, sides, ..ExchangeOptions::default() };
         Exchange::new(scene, self.patch, options).map_err(|error| match error {

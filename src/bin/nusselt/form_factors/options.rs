@@ -1,8 +1,10 @@
 //! The options of `form-factors`, as they are typed.
 
 use crate::summary::number;
+use glam::DVec3;
 use nusselt::factors::PatchPlan;
 use nusselt::io::matrix::MatrixFormat;
+use nusselt::scene::Scene;
 use std::ops::Range;
 use std::path::PathBuf;
 
@@ -15,6 +17,28 @@ pub(super) fn parse_patch(text: &str) -> Result<PatchPlan, String> {
             None => Err("it is polygon, object, or the length of the longest edge in scene units, above 0".to_owned()),
         },
     }
+}
+
+/// More patches than this are not made: a row of the matrix would be as long.
+const MOST_PATCHES: f64 = 4e6;
+
+/// Refuses a mesh that would have more patches, before there is memory for them. What is counted are the fewest that there can be: none is
+/// larger than a square with edges of that length, and none is longer than two of them.
+pub(super) fn check_fineness(scene: &Scene, plan: PatchPlan) -> Result<(), String> {
+    let PatchPlan::Mesh { longest_edge } = plan else { return Ok(()) };
+    let fewest = scene.pieces().map(|piece| {
+        // In edges, so that no square overflows unless there are too many.
+        let corners: Vec<DVec3> = piece.points().map(|corner| corner / longest_edge).collect();
+        let from_first = corners.iter().map(|&corner| corner - corners[0]);
+        let twice_area: DVec3 = from_first.clone().zip(from_first.clone().skip(1)).map(|(a, b)| a.cross(b)).sum();
+        let length = from_first.map(DVec3::length).fold(0.0, f64::max);
+        (twice_area.length() / 2.0).max(length / 2.0)
+    });
+    let fewest: f64 = fewest.sum();
+    if fewest <= MOST_PATCHES {
+        return Ok(());
+    }
+    Err(format!("there would be more than {MOST_PATCHES} patches; take a longer edge than {}", number(longest_edge)))
 }
 
 /// As it is typed.
@@ -54,6 +78,17 @@ pub(super) fn parse_output(text: &str) -> Result<PathBuf, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn too_fine_meshes_are_told_before_they_are_made() {
+        let scene = nusselt::samples::cornell_box().to_builder().build().expect("the box");
+        let check = |longest_edge| check_fineness(&scene, PatchPlan::Mesh { longest_edge });
+        assert!(check(10.0).is_ok() && check(1e300).is_ok());
+        for longest_edge in [0.1, 1e-9, 1e-200, f64::MIN_POSITIVE] {
+            assert!(check(longest_edge).is_err(), "{longest_edge}");
+        }
+        assert!(check_fineness(&scene, PatchPlan::Polygons).is_ok());
+    }
 
     #[test]
     fn options_are_read_as_they_are_named() {

@@ -24,6 +24,7 @@ pub(super) struct Reciprocity<'p> {
     waiting: Vec<Vec<Exchanged>>,
     count: usize,
     most: usize,
+    tolerance: f64,
     found: Defects,
 }
 
@@ -36,6 +37,10 @@ pub(super) struct Defects {
     pub(super) between: Option<[u32; 2]>,
     /// The largest of the same over `A_i + A_j`: not above the tolerance if both factors are within it.
     pub(super) largest_relative: f64,
+    /// Between these patches.
+    pub(super) between_relative: Option<[u32; 2]>,
+    /// Pairs of which this is above the tolerance.
+    pub(super) pairs_above_tolerance: u64,
     /// So many pairs of which one sees the other were compared.
     pub(super) pairs: u64,
     /// Pairs were compared whose numbers have a sum that this divides: 1 is all of them.
@@ -44,10 +49,18 @@ pub(super) struct Defects {
 
 impl<'p> Reciprocity<'p> {
     /// Of these rows of a matrix, which come in their order.
-    pub(super) fn new(patches: &'p [PatchInfo], rows: Range<u32>) -> Self {
+    pub(super) fn new(patches: &'p [PatchInfo], rows: Range<u32>, tolerance: f64) -> Self {
         let waiting = vec![Vec::new(); rows.len()];
-        let found = Defects { largest: 0.0, between: None, largest_relative: 0.0, pairs: 0, every: 1 };
-        Self { patches, rows, waiting, count: 0, most: MOST_WAITING, found }
+        let found = Defects {
+            largest: 0.0,
+            between: None,
+            largest_relative: 0.0,
+            between_relative: None,
+            pairs_above_tolerance: 0,
+            pairs: 0,
+            every: 1,
+        };
+        Self { patches, rows, waiting, count: 0, most: MOST_WAITING, tolerance, found }
     }
 
     pub(super) fn add(&mut self, row: &Row) {
@@ -102,9 +115,10 @@ impl<'p> Reciprocity<'p> {
             (found.largest, found.between) = (defect, Some(pair));
         }
         // Areas that overflow say nothing.
-        if relative.is_finite() {
-            found.largest_relative = found.largest_relative.max(relative);
+        if relative.is_finite() && relative > found.largest_relative {
+            (found.largest_relative, found.between_relative) = (relative, Some(pair));
         }
+        found.pairs_above_tolerance += u64::from(relative > self.tolerance);
     }
 
     /// Halves what waits.
@@ -148,7 +162,7 @@ mod tests {
 
     fn found(rows: Range<u32>, wrong: [u32; 2], by: f64, most: usize) -> Defects {
         let patches = patches();
-        let mut reciprocity = Reciprocity::new(&patches, rows.clone());
+        let mut reciprocity = Reciprocity::new(&patches, rows.clone(), 1e-3);
         reciprocity.most = most;
         rows.for_each(|patch| reciprocity.add(&row(patch, wrong, by)));
         assert!(reciprocity.count == 0 && reciprocity.waiting.iter().all(Vec::is_empty));
@@ -165,6 +179,7 @@ mod tests {
             let areas = f64::from(wrong[0] + wrong[1] + 2);
             assert!((defects.largest_relative - 0.25 / areas).abs() < 1e-15);
             assert_eq!((defects.pairs, defects.every), (190, 1));
+            assert_eq!((defects.pairs_above_tolerance, defects.between_relative), (1, Some(pair)));
         }
     }
 
@@ -183,6 +198,7 @@ mod tests {
     fn rows_that_do_not_come_are_not_waited_for() {
         let defects = found(5..9, [6, 4], 1.0, usize::MAX);
         assert!(defects.pairs == 6 && defects.largest < 1e-15, "{defects:?}");
+        assert_eq!(defects.pairs_above_tolerance, 0);
         assert!((found(5..9, [8, 5], 1.0, usize::MAX).largest - 1.0).abs() < 1e-15);
     }
 

@@ -144,7 +144,7 @@ impl<'a> Report<'a> {
         lines
             .add("factors", format!("{}, rows within {closure} of 1, {raw} before residues were placed", self.factors));
         lines.add("background", format!("{:.8} on average", self.background_mean));
-        let [largest, tolerance] = [self.largest_estimate, self.tolerance].map(number);
+        let [largest, tolerance] = [short(self.largest_estimate), number(self.tolerance)];
         lines.add("estimates", format!("at most {largest}; above {tolerance} in {} rows", self.rows_above_tolerance));
         if let Some(defects) = &self.reciprocity {
             lines.add("reciprocity", in_words(defects));
@@ -168,9 +168,14 @@ impl<'a> Report<'a> {
     }
 }
 
+/// How small something is.
+fn short(x: f64) -> String {
+    if x == 0.0 { "0".to_owned() } else { format!("{x:.1e}") }
+}
+
 fn in_words(defects: &Defects) -> String {
-    let Defects { largest, between, largest_relative, pairs, every } = *defects;
-    let [largest, relative] = [largest, largest_relative].map(number);
+    let Defects { largest, between, largest_relative, pairs, every, .. } = *defects;
+    let [largest, relative] = [largest, largest_relative].map(short);
     let between = between.map_or_else(String::new, |[i, j]| format!(" (patches {i} and {j})"));
     let part = if every > 1 { format!(", 1 of {every}") } else { String::new() };
     format!("A_i F_ij and A_j F_ji differ by at most {largest}{between}, {relative} of A_i + A_j; {pairs} pairs{part}")

@@ -43,7 +43,7 @@ impl<'p> Tally<'p> {
             worst_closure_raw: 0.0,
             largest_estimate: 0.0,
             rows_above: 0,
-            reciprocity: (!two_sided).then(|| Reciprocity::new(patches, rows)),
+            reciprocity: (!two_sided).then(|| Reciprocity::new(patches, rows, tolerance)),
         }
     }
 
@@ -101,6 +101,14 @@ impl<'p> Tally<'p> {
             common.warn(&format!(
                 "{rows} rows have factors whose error is estimated above the tolerance {tolerance}, at most {largest}; \
                  their estimates say which, and smaller patches help"
+            ));
+        }
+        if let Some(Defects { pairs_above_tolerance: above @ 1.., between_relative: Some([i, j]), .. }) = self.defects()
+        {
+            let tolerance = number(self.tolerance);
+            common.warn(&format!(
+                "of {above} pairs of patches, such as {i} and {j}, reciprocity shows that a factor is off by more than \
+                 the tolerance {tolerance}; take a smaller one to have that accuracy"
             ));
         }
     }
