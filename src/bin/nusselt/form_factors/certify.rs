@@ -7,7 +7,7 @@ use glam::DVec3;
 use nusselt::contour::{Domain, SceneOrder, Viewpoint};
 use nusselt::factors::PatchInfo;
 use nusselt::io::CertificateRow;
-use nusselt::scene::{PolygonId, Scene, Side};
+use nusselt::scene::{PieceRef, PolygonId, Scene, Side};
 use nusselt::verify::{Arithmetic, Certificate};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
@@ -72,7 +72,7 @@ fn prove_from(
     arithmetic: Arithmetic,
 ) -> Result<Certificate, Failure> {
     let scene = order.scene();
-    let corners = || scene.polygon(polygon).pieces().flat_map(|piece| piece.points());
+    let corners = || scene.polygon(polygon).pieces().flat_map(PieceRef::points);
     let weight = 1.0 / corners().count() as f64;
     let middle = corners().fold(DVec3::ZERO, |sum, corner| sum + corner * weight);
     let viewpoint = Viewpoint::on_surface(scene, polygon, Side::Front, middle);

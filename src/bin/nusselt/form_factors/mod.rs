@@ -104,10 +104,10 @@ impl FormFactors {
         let mut tally = Tally::new(exchange.patches(), rows.clone(), self.tolerance, self.two_sided);
         let mut work = Work { file, exchange: &exchange, tally: &mut tally, times: &mut times, quiet: common.quiet };
         match &self.output {
-            Some(path) => work.to_file(path, &job, self.resume)?,
+            Some(path) => work.write_file(path, &job, self.resume)?,
             None if common.json => work.run(rows.clone(), |_| Ok(())).map_err(|error| error.about("the summary"))?,
             None => {
-                let printed = work.to_stdout(rows);
+                let printed = work.print_all(rows);
                 tally.warn(common);
                 return printed;
             }
@@ -186,7 +186,7 @@ struct Work<'a, 'p> {
 }
 
 impl Work<'_, '_> {
-    fn to_file(&mut self, path: &Path, job: &MatrixJob<'_>, resume: bool) -> Result<(), Failure> {
+    fn write_file(&mut self, path: &Path, job: &MatrixJob<'_>, resume: bool) -> Result<(), Failure> {
         let writer = if resume {
             MatrixWriter::resume_with(path, job, |row| self.tally.add_kept(row))
         } else {
@@ -195,8 +195,13 @@ impl Work<'_, '_> {
         let file = self.file;
         let mut writer = writer.map_err(|error| refused(file, error))?;
         let rows = writer.next_row()..writer.end_row();
+        let partial = MatrixWriter::files(path)[1].display().to_string();
+        let keep = |failure: Failure| match failure {
+            Failure::Work(message) => Failure::Work(format!("{message}; the rows before are in {partial}")),
+            usage @ Failure::Usage(_) => usage,
+        };
         self.run(rows, |row| writer.row(row).map_err(|error| Unwritten::Failed(refused(file, error))))
-            .map_err(|error| error.about(path.display()))?;
+            .map_err(|error| keep(error.about(path.display())))?;
         let start = Instant::now();
         writer.finish().map_err(|error| refused(file, error))?;
         self.times.write_s = start.elapsed().as_secs_f64();
@@ -204,14 +209,14 @@ impl Work<'_, '_> {
     }
 
     /// As CSV. A reader that has gone away (`| head`) is not a failure.
-    fn to_stdout(&mut self, rows: Range<u32>) -> Result<(), Failure> {
-        let print_all = || {
+    fn print_all(&mut self, rows: Range<u32>) -> Result<(), Failure> {
+        let write_all = || {
             let mut table = MatrixCsv::new(BufWriter::with_capacity(1 << 16, io::stdout()))?;
             self.run(rows, |row| Ok(table.row(row)?))?;
             table.finish()?;
             Ok(())
         };
-        match print_all() {
+        match write_all() {
             Err(Unwritten::Io(error)) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
             printed => printed.map_err(|error| error.about("to standard output")),
         }
