@@ -4,7 +4,7 @@ use nusselt::factors::{PatchInfo, Row};
 use serde::Serialize;
 use std::ops::Range;
 
-/// So many exchanges wait for their counterparts at most: 256 MB. With more, only every second, fourth, ... pair is compared.
+/// So many exchanges wait for their counterparts at most: 256 MB, and up to as much again that lists have in reserve. With more, only every second, fourth, ... pair is compared.
 const MOST_WAITING: usize = 1 << 24;
 
 /// What comes first of a pair.
