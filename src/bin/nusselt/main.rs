@@ -4,6 +4,7 @@ mod args;
 mod compare;
 mod contour;
 mod failure;
+mod form_factors;
 mod info;
 mod input;
 mod output;
@@ -36,6 +37,8 @@ enum Command {
     Contour(contour::Contour),
     #[command(name = "point-factors")]
     PointFactors(point_factors::PointFactorsOf),
+    #[command(name = "form-factors")]
+    FormFactors(form_factors::FormFactors),
     Compare(compare::Compare),
     Verify(verify::Verify),
     Scene(scene::Scene),
@@ -47,6 +50,7 @@ impl Command {
             Self::Info(command) => command.run(common),
             Self::Contour(command) => command.run(common),
             Self::PointFactors(command) => command.run(common),
+            Self::FormFactors(command) => command.run(common),
             Self::Compare(command) => command.run(common),
             Self::Verify(command) => command.run(common),
             Self::Scene(command) => command.run(common),

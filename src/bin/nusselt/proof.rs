@@ -2,9 +2,11 @@
 
 use crate::failure::Failure;
 use crate::summary::{Lines, number};
+use nusselt::contour::ContourImage;
 use nusselt::scene::Scene;
 use nusselt::verify::{Arithmetic, Certificate, Defect, Evidence};
 use std::path::Path;
+use std::time::Instant;
 
 /// A proof that succeeded.
 pub(crate) struct Proof {
@@ -19,6 +21,17 @@ impl Proof {
     pub(crate) fn new(certificate: Certificate, evidence: &Evidence, arithmetic: Arithmetic, certify_ms: f64) -> Self {
         Self { certificate, arithmetic, certify_ms, epsilon: evidence.epsilon, slivers: evidence.slivers.len() }
     }
+}
+
+/// Proves an image that was just made of the scene of a file; the evidence is for keeping.
+pub(crate) fn prove(file: &Path, image: &ContourImage, arithmetic: Arithmetic) -> Result<(Evidence, Proof), Failure> {
+    let start = Instant::now();
+    let evidence = image.evidence();
+    let outcome = evidence.check(image.scene(), arithmetic);
+    let certify_ms = start.elapsed().as_secs_f64() * 1e3;
+    let certificate = outcome.map_err(|defect| failed_image(file, image.scene(), &evidence, &defect))?;
+    let proof = Proof::new(certificate, &evidence, arithmetic, certify_ms);
+    Ok((evidence, proof))
 }
 
 /// The name by which an arithmetic is asked for.
@@ -48,7 +61,7 @@ impl Proof {
 /// more may be out of order than is excused.
 ///
 /// One message: what is wrong where, then the eye and the polygons that take part as lines of Rust.
-pub(crate) fn failed_image(file: &Path, scene: &Scene, evidence: &Evidence, defect: &Defect) -> Failure {
+fn failed_image(file: &Path, scene: &Scene, evidence: &Evidence, defect: &Defect) -> Failure {
     let lines = defect.to_rust(evidence, scene);
     let [what, advice] = if evidence.epsilon > 0.0 {
         ["the contour image failed its proof", "try a smaller --epsilon; if it must hold, report"]

@@ -59,6 +59,7 @@ mod writer;
 mod tests;
 
 pub use super::digest::Digest;
+pub use csv::MatrixCsv;
 pub use error::MatrixError;
 pub use format::MatrixFormat;
 pub use manifest::{MANIFEST_SCHEMA, Manifest, MatrixJob, scene_digest};

@@ -25,6 +25,11 @@ pub struct MatrixWriter {
 }
 
 impl MatrixWriter {
+    /// All files that a run with this final file writes: itself, and what is there until it is complete.
+    pub fn files(path: &Path) -> [PathBuf; 3] {
+        [path.to_owned(), partial(path), manifest_path(path)]
+    }
+
     /// Starts a file. Its ending picks the format: see [`MatrixFormat`].
     ///
     /// # Errors
@@ -41,6 +46,14 @@ impl MatrixWriter {
     /// [`MatrixError::Changed`] if the unfinished run was of another scene, with other options, of other patches or rows, or by another version of
     /// this crate. [`MatrixError::NotRows`] or [`MatrixError::Damaged`] if even its patches cannot be read. As [`MatrixWriter::create`] otherwise.
     pub fn resume(path: &Path, job: &MatrixJob<'_>) -> Result<Self, MatrixError> {
+        Self::resume_with(path, job, |_| ())
+    }
+
+    /// The same, and hands over the rows that are there, in their order: for sums over all rows.
+    ///
+    /// # Errors
+    /// As [`MatrixWriter::resume`].
+    pub fn resume_with(path: &Path, job: &MatrixJob<'_>, mut kept: impl FnMut(&Row)) -> Result<Self, MatrixError> {
         let (format, manifest) = plan(path, job)?;
         let partial = partial(path);
         if !partial.try_exists().map_err(MatrixError::io(&partial))? {
@@ -52,8 +65,9 @@ impl MatrixWriter {
             return Err(MatrixError::Changed { path: partial, differences });
         }
         let mut place = reader.place();
-        while let NextRow::Row(_) = reader.next()? {
+        while let NextRow::Row(row) = reader.next()? {
             place = reader.place();
+            kept(&row);
         }
         let next = reader.next_row();
         let open = || {

@@ -9,7 +9,7 @@ use crate::args::{
 use crate::failure::Failure;
 use crate::input::{build_order, check_way, load, way};
 use crate::output::{is_same_file, print, print_json, write_file, write_obj, written};
-use crate::proof::{Proof, failed_image};
+use crate::proof::{Proof, prove};
 use crate::summary::Timing;
 use glam::DVec3;
 use nusselt::contour::{ContourImage, Projection, Projector, ViewOptions};
@@ -231,16 +231,11 @@ impl Contour {
         let Some(arithmetic) = self.certify.or(self.certificate.as_ref().map(|_| Arithmetic::Kernel)) else {
             return Ok(None);
         };
-        let start = Instant::now();
-        let evidence = image.evidence();
-        let scene = image.scene();
-        let outcome = evidence.check(scene, arithmetic);
-        let certify_ms = start.elapsed().as_secs_f64() * 1e3;
-        let certificate = outcome.map_err(|defect| failed_image(&self.scene, scene, &evidence, &defect))?;
+        let (evidence, proof) = prove(&self.scene, image, arithmetic)?;
         if let Some(path) = &self.certificate {
-            write_file(path, |out| write_certificate(&evidence, scene, out))?;
+            write_file(path, |out| write_certificate(&evidence, image.scene(), out))?;
         }
-        Ok(Some(Proof::new(certificate, &evidence, arithmetic, certify_ms)))
+        Ok(Some(proof))
     }
 
     fn write(
