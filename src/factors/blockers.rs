@@ -1,13 +1,15 @@
 //! Which elements of a facet are seen wholly from an element, which not at all, and which it takes views to tell.
 
+use super::contacts::contacts;
 use super::element::{Element, Elements};
 use super::facets::Facets;
 use super::shaft::{Blocker, Blocks, Lies, Shaft};
+use super::shape::Frame;
 use super::tree::ElementTree;
 use crate::bvh::Content;
 use crate::contour::SceneOrder;
 use crate::scene::Side;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Where all facets are, seen from one.
 pub(super) struct Around {
@@ -16,18 +18,25 @@ pub(super) struct Around {
     facets: Vec<Lies>,
     /// This one to the plane of each facet.
     own: Vec<Lies>,
+    /// Where facets stand on this one or pass through it, in its frame.
+    contacts: Vec<[DVec2; 2]>,
 }
 
 impl Around {
-    pub(super) fn of(facet: u32, facets: &Facets) -> Self {
-        let all = 0..facets.facets.len() as u32;
+    pub(super) fn of(facet: u32, facets: &Facets, frame: &Frame) -> Self {
+        let all = 0..facets.all.len() as u32;
         let lies = all.map(|other| (facets.lies(other, facet), facets.lies(facet, other)));
-        let (facets, own) = lies.unzip();
-        Self { facet, facets, own }
+        let (lies, own): (Vec<Lies>, Vec<Lies>) = lies.unzip();
+        let contacts = contacts(facet, facets, frame, &lies);
+        Self { facet, facets: lies, own, contacts }
     }
 
     pub(super) fn facet(&self) -> u32 {
         self.facet
+    }
+
+    pub(super) fn contacts(&self) -> &[[DVec2; 2]] {
+        &self.contacts
     }
 
     /// A facet to the plane of this one.
@@ -86,10 +95,10 @@ impl Blockers<'_> {
                 found(element, seen, &mut blockers.iter().map(|&blocker| candidates[blocker as usize].facet));
             }
         };
-        if self.facets.facets[facet as usize].is_covered {
+        if self.facets.all[facet as usize].is_covered {
             return all(root, Seen::Unknown, &[], &[]);
         }
-        let target = &self.facets.facets[facet as usize];
+        let target = &self.facets.all[facet as usize];
         let shaft = Shaft::between(&from.ring, &target.ring);
         let candidates = self.candidates(around, from, facet, &shaft);
         let mut corners = Vec::new();
@@ -98,7 +107,7 @@ impl Blockers<'_> {
             let is_one = tree.halves(node).is_none();
             let mut is_hidden = false;
             if !blockers.is_empty() {
-                tree.corners(node, frame, &self.elements.elements, &mut corners);
+                tree.corners(node, frame, &self.elements.all, &mut corners);
                 blockers.retain(|&blocker| {
                     is_hidden || {
                         let blocks = candidates[blocker as usize].blocks(&corners);
@@ -113,7 +122,7 @@ impl Blockers<'_> {
                 let shaft = Shaft::between(&from.ring, &ring);
                 let is_free = |&blocker: &u32| {
                     let facet = candidates[blocker as usize].facet;
-                    !shaft.excludes(&self.facets.facets[facet as usize].ring)
+                    !shaft.excludes(&self.facets.all[facet as usize].ring)
                 };
                 blockers.retain(is_free);
             }
@@ -141,7 +150,7 @@ impl Blockers<'_> {
             {
                 continue;
             }
-            let blocker = &self.facets.facets[number as usize];
+            let blocker = &self.facets.all[number as usize];
             let own = match around.lies(number) {
                 Lies::Across => Lies::of(&from.ring, blocker.spanning),
                 lies => lies,
@@ -188,13 +197,13 @@ impl Blockers<'_> {
     ///
     /// Light that leaves a surface of which it sees the outside, or that it is outside of, gets to an inside through an outside only.
     fn is_redundant(&self, around: &Around, from: &Element, facet: u32) -> bool {
-        let Some(solid) = self.facets.facets[facet as usize].solid else { return false };
+        let Some(solid) = self.facets.all[facet as usize].solid else { return false };
         let shown = match around.lies(facet) {
             Lies::Front => Side::Front,
             Lies::Behind => Side::Back,
             Lies::On | Lies::Across => return false,
         };
-        let own = self.facets.facets[around.facet as usize].solid;
+        let own = self.facets.all[around.facet as usize].solid;
         if own.is_some_and(|own| own.number == solid.number) {
             return shown == Side::Back;
         }

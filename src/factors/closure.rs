@@ -57,7 +57,7 @@ mod tests {
         place(&mut lacking).expect("within the estimates");
         let factors: Vec<f64> = lacking.entries.iter().map(|entry| entry.share.factor).collect();
         assert!((lacking.sum() - 1.0).abs() < 1e-15);
-        assert_eq!(factors[0], 0.5);
+        assert!((factors[0] - 0.5).abs() <= 0.0);
         assert!((factors[1] - 0.300_25).abs() < 1e-15 && (factors[2] - 0.199_75).abs() < 1e-15, "{factors:?}");
     }
 
@@ -72,6 +72,6 @@ mod tests {
     #[test]
     fn what_no_estimate_explains_is_not_placed() {
         let error = place(&mut row(&[(0.5, 1e-4), (0.49, 1e-4)])).expect_err("a residue of 0.01");
-        assert!((error.residue - 0.01).abs() < 1e-15 && error.estimates == 2e-4);
+        assert!((error.residue - 0.01).abs() < 1e-15 && (error.estimates - 2e-4).abs() < 1e-18);
     }
 }

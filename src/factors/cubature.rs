@@ -9,6 +9,9 @@ use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+/// Takes values by columns.
+pub(super) type Add<'a> = &'a mut dyn FnMut(u32, f64);
+
 /// A value of one integrand, or its integral.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Part {
@@ -84,7 +87,7 @@ impl Rule {
     /// Adds weights to a point of -1 to 1 squared.
     fn add(&mut self, [u, v]: [f64; 2], weights: &[(usize, f64)]) {
         let at = [0.5 + 0.5 * u, 0.5 + 0.5 * v];
-        let known = self.points.iter().position(|&(point, _)| point == at);
+        let known = self.points.iter().position(|(point, _)| point.map(f64::to_bits) == at.map(f64::to_bits));
         let place = known.unwrap_or_else(|| {
             self.points.push((at, [0.0; SUMS]));
             self.points.len() - 1
@@ -197,9 +200,9 @@ impl Scratch {
     }
 }
 
-/// Means over a convex ring of what `look` finds at a point and hands over by columns.
+/// Means over convex rings, parts of a polygon of that area, of what `look` finds at a point and hands over by columns.
 pub(super) struct Cubature<'a, L> {
-    pub(super) ring: &'a [DVec3],
+    pub(super) parts: &'a [Vec<DVec3>],
     pub(super) area: f64,
     /// The error of the mean that each column may have.
     pub(super) allowed: f64,
@@ -209,11 +212,11 @@ pub(super) struct Cubature<'a, L> {
 
 impl<L, E> Cubature<'_, L>
 where
-    L: FnMut(DVec3, &mut dyn FnMut(u32, f64)) -> Result<(), E>,
+    L: FnMut(DVec3, Add<'_>) -> Result<(), E>,
 {
     /// By a fixed number of points.
     pub(super) fn fixed(&mut self, division: Division) -> Result<Means, E> {
-        let mut parts: Vec<[DVec3; 4]> = quads(self.ring.len()).map(|quad| quad.map(|k| self.ring[k])).collect();
+        let mut parts = self.quads();
         let rule = if matches!(division, Division::None) { Rule::first() } else { Rule::genz_malik() };
         match division {
             Division::None => {}
@@ -244,8 +247,8 @@ where
             Ok::<usize, E>(points)
         };
         let mut spent = 0;
-        for quad in quads(self.ring.len()) {
-            spent = take(self, quad.map(|k| self.ring[k]), &mut totals, &mut waiting)?;
+        for quad in self.quads() {
+            spent = take(self, quad, &mut totals, &mut waiting)?;
         }
         while totals.over > 0 && spent < most {
             let Some(region) = waiting.pop() else { break };
@@ -257,6 +260,10 @@ where
         totals.touched.iter().for_each(|&column| self.scratch.totals[column as usize] = 0.0);
         let regions = waiting.into_sorted_vec();
         Ok(Means { parts: self.sum(&regions) })
+    }
+
+    fn quads(&self) -> Vec<[DVec3; 4]> {
+        self.parts.iter().flat_map(|ring| quads(ring.len()).map(|quad| quad.map(|k| ring[k]))).collect()
     }
 
     fn region(&mut self, corners: [DVec3; 4], rule: &Rule) -> Result<Region, E> {

@@ -30,7 +30,7 @@ pub(super) struct Element {
 /// All patches and what they are made of.
 pub(super) struct Elements {
     pub(super) patches: Vec<PatchInfo>,
-    pub(super) elements: Vec<Element>,
+    pub(super) all: Vec<Element>,
     /// The elements of each patch.
     pub(super) of_patch: Vec<Vec<u32>>,
     /// The elements of each facet.
@@ -41,10 +41,10 @@ pub(super) struct Elements {
 
 impl Elements {
     pub(super) fn of(scene: &Scene, facets: &Facets, plan: PatchPlan) -> Result<Self, ExchangeError> {
-        let frames: Vec<Frame> = facets.facets.iter().map(|facet| Frame::through(facet.spanning)).collect();
-        let mut all = Self {
+        let frames: Vec<Frame> = facets.all.iter().map(|facet| Frame::through(facet.spanning)).collect();
+        let mut found = Self {
             patches: Vec::new(),
-            elements: Vec::new(),
+            all: Vec::new(),
             of_patch: Vec::new(),
             of_facet: vec![Vec::new(); frames.len()],
             frames,
@@ -54,17 +54,17 @@ impl Elements {
             let name = polygon.object_name();
             match plan {
                 PatchPlan::Polygons => {
-                    let patch = all.patch(name.to_owned(), polygon.id())?;
+                    let patch = found.patch(name.to_owned(), polygon.id())?;
                     polygon.pieces().for_each(|piece| {
-                        all.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.scale))
+                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.scale));
                     });
                 }
                 PatchPlan::Objects => {
                     let known = of_object[polygon.object().index()];
-                    let patch = known.map_or_else(|| all.patch(name.to_owned(), polygon.id()), Ok)?;
+                    let patch = known.map_or_else(|| found.patch(name.to_owned(), polygon.id()), Ok)?;
                     of_object[polygon.object().index()] = Some(patch);
                     polygon.pieces().for_each(|piece| {
-                        all.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.scale))
+                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.scale));
                     });
                 }
                 PatchPlan::Mesh { longest_edge } => {
@@ -72,18 +72,18 @@ impl Elements {
                         let outline: Vec<_> =
                             piece.vertices().iter().map(|&id| (id, scene.vertex(id) * facets.scale)).collect();
                         let facet = facets.of_piece[piece.id().index()];
-                        let frame = &all.frames[facet as usize];
+                        let frame = &found.frames[facet as usize];
                         let parts = mesh::elements(&outline, frame, longest_edge * facets.scale)
                             .map_err(|mesh::TooFine| ExchangeError::TooFine { polygon: polygon.id() })?;
                         for part in parts {
-                            let patch = all.patch(name.to_owned(), polygon.id())?;
-                            all.add(patch, facet, part);
+                            let patch = found.patch(name.to_owned(), polygon.id())?;
+                            found.add(patch, facet, part);
                         }
                     }
                 }
             }
         }
-        Ok(all)
+        Ok(found)
     }
 
     fn patch(&mut self, name: String, polygon: PolygonId) -> Result<u32, ExchangeError> {
@@ -114,8 +114,8 @@ impl Elements {
             ring,
             flat,
         };
-        let number = self.elements.len() as u32;
-        self.elements.push(element);
+        let number = self.all.len() as u32;
+        self.all.push(element);
         self.of_patch[patch as usize].push(number);
         self.of_facet[facet as usize].push(number);
         self.patches[patch as usize].area += area;

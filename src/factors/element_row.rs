@@ -2,7 +2,8 @@
 
 use super::ExchangeError;
 use super::blockers::{Around, Blockers, Seen};
-use super::cubature::{Cubature, Division, Scratch};
+use super::contacts::parts;
+use super::cubature::{Add, Cubature, Division, Scratch};
 use super::element::{Element, Elements};
 use super::hidden::{HiddenSpace, Target};
 use super::row::Share;
@@ -30,6 +31,8 @@ pub(super) struct RowSpace {
     /// For integrals of one column.
     single: Scratch,
     around: Option<Around>,
+    /// The element in parts within which what is seen changes steadily.
+    parts: Vec<Vec<DVec3>>,
     found: Found,
     /// What each column gets.
     shares: Vec<Share>,
@@ -49,9 +52,9 @@ impl RowSpace {
     pub(super) fn new(elements: &Elements) -> Self {
         let columns = Columns { patches: elements.patches.len() as u32 }.count();
         let found = Found {
-            seen: vec![Seen::Unknown; elements.elements.len()],
+            seen: vec![Seen::Unknown; elements.all.len()],
             known: Vec::new(),
-            between: vec![0..0; elements.elements.len()],
+            between: vec![0..0; elements.all.len()],
             facets: Vec::new(),
         };
         Self {
@@ -60,6 +63,7 @@ impl RowSpace {
             hidden: HiddenSpace::default(),
             single: Scratch::new(1),
             around: None,
+            parts: Vec::new(),
             found,
             shares: vec![Share::default(); columns],
             columns: Vec::new(),
@@ -118,11 +122,12 @@ impl ElementRows<'_> {
     fn fill(&self, number: u32, effort: Effort, space: &mut RowSpace) -> Result<(), ExchangeError> {
         let elements = self.blockers.elements;
         let tolerance = effort.tolerance;
-        let from = &elements.elements[number as usize];
+        let from = &elements.all[number as usize];
         let around = match space.around.take() {
             Some(around) if around.facet() == from.facet => around,
-            _ => Around::of(from.facet, self.blockers.facets),
+            _ => Around::of(from.facet, self.blockers.facets, &elements.frames[from.facet as usize]),
         };
+        space.parts = parts(from, &elements.frames[from.facet as usize], around.contacts());
         space.around = Some(around);
         let allowed = tolerance * (1.0 - OF_TOLERANCE);
         let mut division = if effort.towards_sides { Division::TowardsSides } else { Division::None };
@@ -159,7 +164,7 @@ impl ElementRows<'_> {
     fn in_front(&self, space: &RowSpace) -> Vec<u32> {
         let Some(around) = &space.around else { return Vec::new() };
         let is_in_front = |lies: Lies| matches!(lies, Lies::Front | Lies::Across);
-        let facets = 0..self.blockers.facets.facets.len() as u32;
+        let facets = 0..self.blockers.facets.all.len() as u32;
         facets.filter(|&facet| is_in_front(around.lies(facet)) && is_in_front(around.facet_lies(facet))).collect()
     }
 
@@ -167,7 +172,7 @@ impl ElementRows<'_> {
     fn integrate_all(&self, number: u32, allowed: f64, space: &mut RowSpace) {
         let elements = self.blockers.elements;
         let partly = space.found.known.iter().filter(|&&element| space.found.seen[element as usize] == Seen::Partly);
-        let mut columns: Vec<u32> = partly.map(|&element| elements.elements[element as usize].patch).collect();
+        let mut columns: Vec<u32> = partly.map(|&element| elements.all[element as usize].patch).collect();
         columns.sort_unstable();
         columns.dedup();
         for column in columns {
@@ -183,19 +188,17 @@ impl ElementRows<'_> {
         from: &'s Element,
         allowed: f64,
         space: &'s mut RowSpace,
-    ) -> Cubature<'s, impl FnMut(DVec3, &mut dyn FnMut(u32, f64)) -> Result<(), ExchangeError>> {
-        let RowSpace { look, scratch, found, .. } = space;
+    ) -> Cubature<'s, impl FnMut(DVec3, Add<'_>) -> Result<(), ExchangeError>> {
+        let RowSpace { look, scratch, found, parts, .. } = space;
         let takes_views = |element: u32| matches!(found.seen[element as usize], Seen::Partly | Seen::Unknown);
-        let look = move |point: DVec3, add: &mut dyn FnMut(u32, f64)| {
-            self.looker.look(look, from.facet, point, takes_views, add)
-        };
-        Cubature { ring: &from.ring, area: from.area, allowed, scratch, look }
+        let look = move |point: DVec3, add: Add<'_>| self.looker.look(look, from.facet, point, takes_views, add);
+        Cubature { parts, area: from.area, allowed, scratch, look }
     }
 
     /// Finds the elements that are seen wholly, which get their share, or never, and what may be between otherwise.
     fn classify(&self, number: u32, tolerance: f64, space: &mut RowSpace) {
         let elements = self.blockers.elements;
-        let from = &elements.elements[number as usize];
+        let from = &elements.all[number as usize];
         for facet in self.in_front(space) {
             let RowSpace { around: Some(around), found, .. } = &mut *space else { return };
             self.blockers.classify(around, from, facet, |element, seen, between| {
@@ -211,7 +214,7 @@ impl ElementRows<'_> {
             if space.found.seen[element as usize] == Seen::Wholly {
                 let Share { factor, error } = self.exchange(number, element, tolerance, space);
                 let share = Share { factor: factor / from.area, error: error / from.area };
-                space.add(elements.elements[element as usize].patch, share);
+                space.add(elements.all[element as usize].patch, share);
             }
         }
     }
@@ -222,7 +225,7 @@ impl ElementRows<'_> {
         let Some(patch) = elements.of_patch.get(column as usize) else { return false };
         patch.iter().all(|&element| {
             let Found { seen, between, .. } = &space.found;
-            let facet = elements.elements[element as usize].facet;
+            let facet = elements.all[element as usize].facet;
             let from_behind = || match &space.around {
                 Some(around) => around.lies(facet) != Lies::Front,
                 None => true,
@@ -236,10 +239,10 @@ impl ElementRows<'_> {
     /// Adds the share of a patch, all that may hide parts of which is known, as far as it is not seen wholly. Views leave it out from now on.
     fn integrate(&self, number: u32, column: u32, allowed: f64, space: &mut RowSpace) {
         let elements = self.blockers.elements;
-        let from = &elements.elements[number as usize];
+        let from = &elements.all[number as usize];
         let frame = &elements.frames[from.facet as usize];
         let receiver = Receiver::new(frame.normal);
-        let RowSpace { hidden, single, around: Some(around), found, .. } = &mut *space else { return };
+        let RowSpace { hidden, single, around: Some(around), found, parts, .. } = &mut *space else { return };
         let partly: Vec<u32> = elements.of_patch[column as usize]
             .iter()
             .copied()
@@ -247,11 +250,11 @@ impl ElementRows<'_> {
             .collect();
         let mut sum = Share::default();
         for &element in &partly {
-            let target = &elements.elements[element as usize];
+            let target = &elements.all[element as usize];
             let Range { start, end } = found.between[element as usize];
-            let blockers = found.facets[start as usize..end as usize].iter().map(|&facet| {
-                (&self.blockers.facets.facets[facet as usize].ring[..], &elements.frames[facet as usize])
-            });
+            let blockers = found.facets[start as usize..end as usize]
+                .iter()
+                .map(|&facet| (&self.blockers.facets.all[facet as usize].ring[..], &elements.frames[facet as usize]));
             let target = Target {
                 element: target,
                 frame: &elements.frames[target.facet as usize],
@@ -259,12 +262,12 @@ impl ElementRows<'_> {
                 receiver,
                 blockers: blockers.collect(),
             };
-            let look = |point: DVec3, add: &mut dyn FnMut(u32, f64)| {
+            let look = |point: DVec3, add: Add<'_>| {
                 add(0, target.factor(point, hidden));
                 Ok::<(), Infallible>(())
             };
             let allowed = allowed / partly.len() as f64;
-            let mut cubature = Cubature { ring: &from.ring, area: from.area, allowed, scratch: single, look };
+            let mut cubature = Cubature { parts, area: from.area, allowed, scratch: single, look };
             let Ok(means) = cubature.adaptive(self.most_views);
             found.seen[element as usize] = Seen::Integrated;
             for part in means.parts {
@@ -275,13 +278,13 @@ impl ElementRows<'_> {
         space.add(column, sum);
     }
 
-    /// A_i F_ij of an element that is seen wholly, from wherever its front is.
+    /// `A_i` `F_ij` of an element that is seen wholly, from wherever its front is.
     fn exchange(&self, number: u32, other: u32, tolerance: f64, space: &RowSpace) -> Share {
         let elements = self.blockers.elements;
-        let [from, to] = [number, other].map(|k| &elements.elements[k as usize]);
+        let [from, to] = [number, other].map(|k| &elements.all[k as usize]);
         let Some(around) = space.around.as_ref() else { return Share::default() };
         let planes = [from.facet, to.facet].map(|facet| &elements.frames[facet as usize]);
-        let spanning = [from.facet, to.facet].map(|facet| self.blockers.facets.facets[facet as usize].spanning);
+        let spanning = [from.facet, to.facet].map(|facet| self.blockers.facets.all[facet as usize].spanning);
         let lies = |whole: Lies, ring: &[_], plane: usize| match whole {
             Lies::Across => Lies::of(ring, spanning[plane]),
             whole => whole,

@@ -62,7 +62,7 @@ impl Exchange {
         }
         let facets = Facets::of(scene).map_err(ExchangeError::Facets)?;
         let elements = Elements::of(scene, &facets, plan)?;
-        let trees = elements.of_facet.iter().map(|facet| ElementTree::of(&elements.elements, facet)).collect();
+        let trees = elements.of_facet.iter().map(|facet| ElementTree::of(&elements.all, facet)).collect();
         let mut patches = elements.patches.clone();
         for patch in &mut patches {
             patch.area = patch.area / facets.scale / facets.scale;
@@ -149,7 +149,7 @@ impl Exchange {
         let mut shares: Vec<(u32, Share)> = Vec::new();
         for &element in &elements.of_patch[patch] {
             let row = rows.row(element, effort, space)?;
-            let weight = elements.elements[element as usize].area / area;
+            let weight = elements.all[element as usize].area / area;
             let weighted = |share: Share| Share { factor: weight * share.factor, error: weight * share.error };
             shares.extend(row.into_iter().map(|(column, share)| (column, weighted(share))));
         }

@@ -13,7 +13,7 @@ use glam::DVec3;
 pub(super) struct Facets {
     /// Takes views of the facets: polygon k is facet k.
     pub(super) order: SceneOrder,
-    pub(super) facets: Vec<Facet>,
+    pub(super) all: Vec<Facet>,
     /// The facet that each piece of the scene is part of.
     pub(super) of_piece: Vec<u32>,
     /// The power of two by which all coordinates are multiplied, so that squares of lengths neither overflow nor vanish.
@@ -75,15 +75,15 @@ impl Facets {
         for plane in planes {
             lies.extend(facets.iter().map(|facet| Lies::of(&facet.ring, plane.spanning)));
         }
-        Ok(Self { order: SceneBvh::build(&scene).into(), facets, of_piece, scale, lies })
+        Ok(Self { order: SceneBvh::build(&scene).into(), all: facets, of_piece, scale, lies })
     }
 }
 
 impl Facets {
     /// How a facet lies to the plane of another one.
     pub(super) fn lies(&self, facet: u32, plane: u32) -> Lies {
-        let place = plane as usize * self.facets.len() + facet as usize;
-        let other = || Lies::of(&self.facets[facet as usize].ring, self.facets[plane as usize].spanning);
+        let place = plane as usize * self.all.len() + facet as usize;
+        let other = || Lies::of(&self.all[facet as usize].ring, self.all[plane as usize].spanning);
         self.lies.get(place).copied().unwrap_or_else(other)
     }
 }

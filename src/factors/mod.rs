@@ -1,12 +1,13 @@
 //! Form factors from points ([`PointSolver`]), and between patches: the matrix of radiation exchange, row by row ([`Exchange`]).
 //!
-//! F[i][j] is the part of what leaves the front of patch i, diffusely, that arrives at the front of patch j; what arrives at backs and
+//! `F[i][j]` is the part of what leaves the front of patch i, diffusely, that arrives at the front of patch j; what arrives at backs and
 //! what leaves the scene are told apart, so that every row sums to 1.
 //!
 //! `docs/form-factors.md` tells how, with what accuracy and at what cost.
 
 mod blockers;
 mod closure;
+mod contacts;
 mod contour;
 mod cubature;
 mod element;

@@ -2,7 +2,7 @@
 //!
 //! Far apart, a few points on each are enough: the integrand cos cos' / (pi r^2) is (n.r)(-n'.r) / (pi r^4), a polynomial over r^4, and for elements whose radii sum to
 //! delta times their distance, r^-4 is a series in delta of which rules of degree 1 and 3 take all below delta^2 and delta^4. Otherwise the contour
-//! integral. Either way the exchange A_i F_ij is the same number seen from both: reciprocity holds to the last bit.
+//! integral. Either way the exchange `A_i` `F_ij` is the same number seen from both: reciprocity holds to the last bit.
 
 use super::contour;
 use super::element::Element;
@@ -19,7 +19,7 @@ const FAR: f64 = 0.5;
 /// rows are to close.
 const RELATIVE: f64 = 1e-3;
 
-/// A_i F_ij and an estimate of its absolute error, at most `tolerance` times the smaller area as far as numbers go. `lower` and `upper` are given in the order of their numbers, each wholly
+/// `A_i` `F_ij` and an estimate of its absolute error, at most `tolerance` times the smaller area as far as numbers go. `lower` and `upper` are given in the order of their numbers, each wholly
 /// in front of the plane of the other.
 pub(super) fn exchange(lower: (&Element, DVec3), upper: (&Element, DVec3), tolerance: f64) -> Share {
     let ((i, n_i), (j, n_j)) = (lower, upper);

@@ -61,7 +61,8 @@ impl Looker<'_> {
         mut share: impl FnMut(u32, f64),
     ) -> Result<(), ExchangeError> {
         let scene = self.facets.order.scene();
-        let piece: PieceId = scene.polygon(PolygonId(facet)).pieces().next().map_or(PieceId(0), |piece| piece.id());
+        let piece: PieceId =
+            scene.polygon(PolygonId(facet)).pieces().next().map_or(PieceId(0), super::super::scene::PieceRef::id);
         let fails = |problem: String| ExchangeError::NoView { point, problem };
         let viewpoint =
             Viewpoint::on_piece(scene, piece, Side::Front, point).map_err(|error| fails(error.to_string()))?;
@@ -84,7 +85,7 @@ impl Looker<'_> {
             let of_facet = &self.elements.of_facet[target as usize];
             // What is seen from behind is never left out.
             let wanted = |element: u32| side == Side::Back || is_wanted(element);
-            let patch = |element: u32| self.elements.elements[element as usize].patch;
+            let patch = |element: u32| self.elements.all[element as usize].patch;
             match of_facet[..] {
                 [] => share(columns.background(), whole(corners)),
                 [first, ref rest @ ..]
@@ -105,7 +106,7 @@ impl Looker<'_> {
                         }
                     });
                     for &number in &*met {
-                        let element = &self.elements.elements[number as usize];
+                        let element = &self.elements.all[number as usize];
                         if flat.iter().all(|&p| element.holds(p)) {
                             share(element.patch, whole(corners));
                             break;

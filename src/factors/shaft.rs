@@ -150,7 +150,7 @@ impl Shaft {
             ring.iter().all(|p| p[axis] <= self.low[axis]) || ring.iter().all(|p| p[axis] >= self.high[axis])
         };
         // A polygon may lie in a face of a box that is no more than that face.
-        let is_flat = |axis: usize| self.low[axis] == self.high[axis];
+        let is_flat = |axis: usize| self.high[axis] <= self.low[axis];
         (0..3).any(|axis| !is_flat(axis) && beyond(axis)) || self.planes.iter().any(is_outside)
     }
 }

@@ -1,7 +1,7 @@
 //! Patches whose factors are known.
 
 use super::cases::{all, cuboid, scene_of};
-use super::references::{discs, graded, lambert, mean, opposed, perpendicular};
+use super::references::{graded, lambert, mean, opposed, perpendicular};
 use super::{TOLERANCES, all_rows, exchange, factor};
 use glam::DVec3;
 use nusselt::factors::PatchPlan;
@@ -65,6 +65,13 @@ fn a_tetrahedron_shares_alike_and_a_cube_as_the_catalogue_says() {
             }
         }
     }
+}
+
+/// Coaxial discs of these radii at distance c (C-41).
+fn discs(r1: f64, r2: f64, c: f64) -> f64 {
+    let (a, b) = (r1 / c, r2 / c);
+    let x = 1.0 + (1.0 + b * b) / (a * a);
+    0.5 * (x - (x * x - 4.0 * (b / a) * (b / a)).sqrt())
 }
 
 #[test]

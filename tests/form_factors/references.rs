@@ -24,13 +24,6 @@ pub(crate) fn perpendicular(w: f64, h: f64, l: f64) -> f64 {
     (w * (1.0 / w).atan() + h * (1.0 / h).atan() - diagonal * (1.0 / diagonal).atan() + 0.25 * logarithm) / (PI * w)
 }
 
-/// Coaxial discs of these radii at distance c (C-41).
-pub(crate) fn discs(r1: f64, r2: f64, c: f64) -> f64 {
-    let (a, b) = (r1 / c, r2 / c);
-    let x = 1.0 + (1.0 + b * b) / (a * a);
-    0.5 * (x - (x * x - 4.0 * (b / a) * (b / a)).sqrt())
-}
-
 /// From a point with a unit normal to a polygon wholly above its horizon, counter-clockwise seen from the point's side of it (Lambert).
 pub(crate) fn lambert(x: DVec3, n: DVec3, polygon: &[DVec3]) -> f64 {
     let pairs = polygon.iter().zip(polygon.iter().cycle().skip(1));
