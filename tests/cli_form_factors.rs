@@ -416,3 +416,31 @@ fn scenes_without_polygons_have_an_empty_matrix() {
     assert!(out.contains("rows         0..0, 0 computed") && err.contains("there are no faces"), "{out}{err}");
     assert_eq!(folder.json("m.json")["factors"], json!([]));
 }
+
+#[test]
+fn reciprocity_is_enforced_if_asked_for_and_told() {
+    let folder = Folder::new("enforced");
+    folder.run("scene city --polygons 120 --seed 1 -o city.obj");
+    let summary = folder.run("form-factors city.obj --tolerance 1e-3 --enforce-reciprocity -o m.json --json");
+    let summary: Value = serde_json::from_str(&summary).expect("JSON");
+    let change = summary["enforced"]["largest_change"].as_f64().expect("a number");
+    assert!(change > 0.0 && change < 4e-3, "{summary}");
+    let file = folder.json("m.json");
+    let area = |k: &Value| file["patches"][k.as_u64().expect("a patch") as usize]["area"].as_f64().expect("an area");
+    let factors = file["factors"].as_array().expect("a list");
+    for entry in factors {
+        let (i, j) = (&entry[0], &entry[1]);
+        let back = factors.iter().find(|other| other[0] == *j && other[1] == *i).expect("both are there");
+        let [there, back] = [entry, back].map(|entry| entry[2].as_f64().expect("a number"));
+        assert!((area(i) * there - area(j) * back).abs() <= 1e-14 * area(i).max(area(j)), "{entry}");
+    }
+    let sums = file["row_sums"].as_array().expect("a list");
+    assert!(sums.iter().all(|sum| (sum.as_f64().expect("a number") - 1.0).abs() <= 1e-12), "{sums:?}");
+    let words = folder.run("form-factors city.obj --tolerance 1e-3 --enforce-reciprocity -o m.csv");
+    assert!(words.contains("enforced     factors changed by at most"), "{words}");
+    // It takes all rows, and a file.
+    for line in ["--rows 0..3 -o a.rows", "--two-sided -o a.csv", "", "-o a.csv --resume"] {
+        let [out, err] = folder.output(&format!("form-factors cube.obj --enforce-reciprocity {line}"), 2);
+        assert!(out.is_empty() && err.contains("--enforce-reciprocity"), "{line}: {err}");
+    }
+}

@@ -6,6 +6,7 @@ mod city;
 mod closed_forms;
 mod hidden;
 mod meshes;
+mod reciprocal;
 mod references;
 mod rows;
 

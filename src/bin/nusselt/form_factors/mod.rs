@@ -1,6 +1,7 @@
 //! `nusselt form-factors`: the matrix of form factors between patches, and its parts put together.
 
 mod certify;
+mod enforce;
 mod merge;
 mod options;
 mod reciprocity;
@@ -68,6 +69,10 @@ pub(crate) struct FormFactors {
     /// Go on with an interrupted run, whose rows are in FILE.partial; the result is the same, byte by byte
     #[arg(long, requires = "output")]
     resume: bool,
+    /// Change factors so that A_i F_ij = A_j F_ji and all rows sum to 1, as little as their estimates allow (least squares); how
+    /// much is told. All rows are in memory
+    #[arg(long, requires = "output", conflicts_with_all = ["rows", "resume", "two_sided"])]
+    enforce_reciprocity: bool,
     /// Before anything is computed, prove the views from the middles of up to 16 patches, for all directions, and say so;
     /// =rational shares no predicate with what made them, and takes about a hundred times as long
     #[arg(long, value_name = "kernel|rational", num_args = 0..=1, require_equals = true,
@@ -103,7 +108,9 @@ impl FormFactors {
         let proved = proved.transpose()?;
         let mut tally = Tally::new(exchange.patches(), rows.clone(), self.tolerance, self.two_sided);
         let mut work = Work { file, exchange: &exchange, tally: &mut tally, times: &mut times, quiet: common.quiet };
+        let mut enforced = None;
         match &self.output {
+            Some(path) if self.enforce_reciprocity => enforced = Some(work.enforce(path, &job)?),
             Some(path) => work.write_file(path, &job, self.resume)?,
             None if common.json => work.run(rows.clone(), |_| Ok(())).map_err(|error| error.about("the summary"))?,
             None => {
@@ -115,7 +122,8 @@ impl FormFactors {
         tally.warn(common);
         let patches = exchange.patches().len();
         let asked = Asked { patch: self.plan_name(), patches, two_sided: self.two_sided, rows };
-        let report = Report::new(&scene, asked, &tally, &times, proved.as_ref());
+        let mut report = Report::new(&scene, asked, &tally, &times, proved.as_ref());
+        report.enforced = enforced;
         if common.json {
             return print_json(&report);
         }
@@ -141,7 +149,8 @@ impl FormFactors {
         let job = MatrixJob::new(scene, exchange.patches())
             .with_option("--patch", self.plan_name())
             .with_option("--tolerance", self.tolerance)
-            .with_option("--two-sided", self.two_sided);
+            .with_option("--two-sided", self.two_sided)
+            .with_option("--enforce-reciprocity", self.enforce_reciprocity);
         match &self.rows {
             Some(rows) => job.with_rows(rows.clone()),
             None => job,

@@ -67,6 +67,9 @@ pub(super) struct Report<'a> {
     worst_closure_raw: f64,
     /// `null` where backs count as their patches: that is not reciprocal.
     reciprocity: Option<Defects>,
+    /// What `--enforce-reciprocity` changed; all else is told of the factors before.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) enforced: Option<Enforced>,
     largest_estimate: f64,
     /// Rows with an estimate above the tolerance.
     rows_above_tolerance: usize,
@@ -84,6 +87,15 @@ struct RowTiming {
     rows_s: f64,
     /// To write the final file from them.
     write_s: f64,
+}
+
+/// What making factors reciprocal took.
+#[derive(Clone, Copy, Serialize)]
+pub(super) struct Enforced {
+    /// The largest change of a factor.
+    pub(super) largest_change: f64,
+    /// How many factors changed by more than their estimates.
+    pub(super) beyond_estimates: usize,
 }
 
 /// What was computed.
@@ -121,6 +133,7 @@ impl<'a> Report<'a> {
             worst_closure: tally.worst_closure,
             worst_closure_raw: tally.worst_closure_raw,
             reciprocity: tally.defects(),
+            enforced: None,
             largest_estimate: tally.largest_estimate,
             rows_above_tolerance: tally.rows_above,
             certificate,
@@ -148,6 +161,11 @@ impl<'a> Report<'a> {
         lines.add("estimates", format!("at most {largest}; above {tolerance} in {} rows", self.rows_above_tolerance));
         if let Some(defects) = &self.reciprocity {
             lines.add("reciprocity", in_words(defects));
+        }
+        if let Some(Enforced { largest_change, beyond_estimates }) = self.enforced {
+            let largest = short(largest_change);
+            let what = format!("factors changed by at most {largest}, {beyond_estimates} by more than their estimates");
+            lines.add("enforced", what);
         }
         if let Some(proved) = self.certificate {
             proved.tell(&mut lines);
