@@ -13,14 +13,14 @@ use nusselt::scene::{Material, PolygonId, Scene, Side};
 const RHO: DVec3 = DVec3::new(0.9, 0.5, 0.1);
 
 fn room() -> ContourImage {
-    let scene = generate(Kind::Room, 1_000, 1).unwrap().to_builder().build().unwrap();
-    let floor = Viewpoint::on_surface(&scene, PolygonId(0), Side::Front, DVec3::ZERO).unwrap();
-    SceneOrder::new(&scene).view(&floor, &Domain::Above).unwrap()
+    let scene = generate(Kind::Room, 1_000, 1).expect("a room").to_builder().build().expect("a scene");
+    let floor = Viewpoint::on_surface(&scene, PolygonId(0), Side::Front, DVec3::ZERO).expect("a floor");
+    SceneOrder::new(&scene).view(&floor, &Domain::Above).expect("a view")
 }
 
 /// Directions towards viewers, from the normal to 89.9 degrees.
 fn views(image: &ContourImage) -> Vec<DVec3> {
-    let normal = image.normal().unwrap();
+    let normal = image.normal().expect("a floor has a normal");
     let (x, y) = normal.any_orthonormal_pair();
     let tilted = |degrees: f64, azimuth: f64| {
         let (sin, cos) = degrees.to_radians().sin_cos();
@@ -30,19 +30,20 @@ fn views(image: &ContourImage) -> Vec<DVec3> {
 }
 
 fn models() -> Vec<(&'static str, Box<dyn Brdf>)> {
-    let gold = Fresnel::conductor(DVec3::new(0.18, 0.42, 1.37), DVec3::new(3.4, 2.3, 1.8)).unwrap();
-    let glass = Fresnel::dielectric(1.5).unwrap();
-    let base = Box::new(Lambert::new(0.5 * RHO).unwrap());
-    let coat = Box::new(Ggx::new(glass, 0.2, 0.2).unwrap());
+    let good = "parameters in range";
+    let gold = Fresnel::conductor(DVec3::new(0.18, 0.42, 1.37), DVec3::new(3.4, 2.3, 1.8)).expect(good);
+    let glass = Fresnel::dielectric(1.5).expect(good);
+    let base = Box::new(Lambert::new(0.5 * RHO).expect(good));
+    let coat = Box::new(Ggx::new(glass, 0.2, 0.2).expect(good));
     vec![
-        ("Lambert", Box::new(Lambert::new(RHO).unwrap())),
-        ("Phong 5", Box::new(Phong::new(RHO, 5.0).unwrap())),
-        ("Phong 500", Box::new(Phong::new(RHO, 500.0).unwrap())),
-        ("Phong 30.5", Box::new(Phong::new(RHO, 30.5).unwrap())),
-        ("GGX 0.05", Box::new(Ggx::new(gold, 0.05, 0.05).unwrap())),
-        ("GGX 0.4 0.1", Box::new(Ggx::new(gold, 0.4, 0.1).unwrap())),
-        ("Ward", Box::new(Ward::new(RHO, 0.2, 0.1).unwrap())),
-        ("Oren-Nayar", Box::new(OrenNayar::new(RHO, 0.5).unwrap())),
+        ("Lambert", Box::new(Lambert::new(RHO).expect(good))),
+        ("Phong 5", Box::new(Phong::new(RHO, 5.0).expect(good))),
+        ("Phong 500", Box::new(Phong::new(RHO, 500.0).expect(good))),
+        ("Phong 30.5", Box::new(Phong::new(RHO, 30.5).expect(good))),
+        ("GGX 0.05", Box::new(Ggx::new(gold, 0.05, 0.05).expect(good))),
+        ("GGX 0.4 0.1", Box::new(Ggx::new(gold, 0.4, 0.1).expect(good))),
+        ("Ward", Box::new(Ward::new(RHO, 0.2, 0.1).expect(good))),
+        ("Oren-Nayar", Box::new(OrenNayar::new(RHO, 0.5).expect(good))),
         ("mirror", Box::new(Mirror::new(glass))),
         ("plastic", Box::new(Sum::new(vec![base, coat]))),
     ]

@@ -2,7 +2,7 @@
 
 use super::{Form, Lobe, RgbEstimate};
 use crate::integral::{
-    Cubature, CubatureOptions, Peak, Smoothness, clip, double_axis_moment, form_factor, unit_outline,
+    Cubature, CubatureOptions, Peak, Smoothness, clip, double_axis_moment, form_factor, perimeter, unit_outline,
 };
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -95,7 +95,9 @@ fn of_lobe(lobe: &Lobe, lit: &[Lit], options: CubatureOptions) -> RgbEstimate {
     for part in lit {
         let (value, error) = if lobe.power == 0 {
             let factor = form_factor(&part.outline, DVec3::Z);
-            (PI * factor, 1e-15 * (1.0 + factor))
+            // As it states, and for corners rounded to units of f64.
+            let rim = perimeter(&part.outline);
+            (PI * factor, 2e-16 * PI * (factor + rim * rim.min(PI)) + 2.0 * f64::EPSILON * rim)
         } else {
             // Of the lobe's tail a bound is enough.
             let bound = TAU * part.largest_cosine(lobe.axis).max(0.0).powi(i32::from(lobe.power));

@@ -20,7 +20,7 @@ mod unit;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use clip::{clip, unit_outline};
+pub(crate) use clip::{clip, perimeter, unit_outline};
 pub use cubature::{Cubature, CubatureOptions, Integral, Peak, Smoothness, integrate};
 pub(crate) use form_factor::form_factor_of_rounded;
 pub use form_factor::{form_factor, form_factor_of_units};

@@ -7,7 +7,7 @@ use crate::integral::{double_axis_moment, solid_angle};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Random numbers that are always the same (Steele, Lea and Flood's SplitMix64).
+/// Random numbers that are always the same (Steele, Lea and Flood, "Fast splittable pseudorandom number generators", 2014).
 struct Random(u64);
 
 impl Random {

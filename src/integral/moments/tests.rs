@@ -105,8 +105,8 @@ fn parts_add_up_to_the_whole() {
 fn the_back_of_a_lobe_is_cut_off() {
     let below = polygon(at(2.5, 0.0), 0.2, 4);
     for n in [0_u16, 1, 2, 3] {
-        assert_eq!(axial_moment(&below, DVec3::Z, n).value, 0.0);
-        assert_eq!(double_axis_moment(&below, -DVec3::Z, n, DVec3::Z).value, 0.0);
+        assert_eq!(axial_moment(&below, DVec3::Z, n), Estimate::default());
+        assert_eq!(double_axis_moment(&below, -DVec3::Z, n, DVec3::Z), Estimate::default());
     }
 }
 
@@ -117,6 +117,6 @@ fn nonsense_has_no_moment() {
         assert_eq!(double_axis_moment(&HEMISPHERE, DVec3::Z, 3, bad), Estimate::default());
         let _ = double_axis_moment(&[DVec3::X, bad, DVec3::Z], DVec3::Z, 3, DVec3::Z);
     }
-    assert_eq!(double_axis_moment(&[], DVec3::Z, 3, DVec3::Z).value, 0.0);
-    assert_eq!(axial_moment(&[DVec3::X, DVec3::X], DVec3::Z, 2).value, 0.0);
+    assert_eq!(double_axis_moment(&[], DVec3::Z, 3, DVec3::Z), Estimate::default());
+    assert!(axial_moment(&[DVec3::X, DVec3::X], DVec3::Z, 2).value.abs() < f64::MIN_POSITIVE);
 }
