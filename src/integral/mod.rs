@@ -16,6 +16,7 @@ mod precise;
 mod solid_angle;
 mod sums;
 mod unit;
+mod zonal;
 
 #[cfg(test)]
 mod tests;
@@ -27,5 +28,6 @@ pub use form_factor::{form_factor, form_factor_of_units};
 pub use moments::{Estimate, axial_moment, double_axis_moment};
 pub use solid_angle::{solid_angle, solid_angle_of_units};
 pub use unit::UnitDirection;
+pub use zonal::zonal_integrals;
 
 pub use sums::{PolygonSum, Sums};
