@@ -29,7 +29,8 @@
 //! | [`bsp`] | the 3D BSP: front-to-back order from any point |
 //! | [`bvh`] | a hierarchy of boxes: the second way to a view, without cutting polygons |
 //! | [`contour`] | the 2D BSP on the sphere of directions, contour images and their cells |
-//! | [`integral`] | solid angles and form factors of cells |
+//! | [`integral`] | solid angles and form factors of cells; moments and cubature over spherical polygons |
+//! | [`brdf`] | reflection: BRDFs, and the radiance reflected from what is seen |
 //! | [`factors`] | form factors from points, and between patches: the matrix, row by row |
 //! | [`hemicube`] | baselines to compare with: the hemicube, with analytic form factors too, and rays |
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
@@ -39,6 +40,7 @@
 //! Source: P. Jacob, *Evaluation of a BRDF using BSP Trees*, Interner Bericht 272/95, University of
 //! Kaiserslautern, 1995.
 
+pub mod brdf;
 pub mod bsp;
 pub mod bvh;
 pub mod contour;

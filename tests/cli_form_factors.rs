@@ -439,7 +439,8 @@ fn reciprocity_is_enforced_if_asked_for_and_told() {
     let words = folder.run("form-factors city.obj --tolerance 1e-3 --enforce-reciprocity -o m.csv");
     assert!(words.contains("enforced     factors changed by at most"), "{words}");
     // It takes all rows, and a file.
-    for line in ["--rows 0..3 -o a.rows", "--two-sided -o a.csv", "", "-o a.csv --resume"] {
+    assert!(folder.fail("form-factors cube.obj --enforce-reciprocity", 2).contains("--output"));
+    for line in ["--rows 0..3 -o a.rows", "--two-sided -o a.csv", "-o a.csv --resume"] {
         let [out, err] = folder.output(&format!("form-factors cube.obj --enforce-reciprocity {line}"), 2);
         assert!(out.is_empty() && err.contains("--enforce-reciprocity"), "{line}: {err}");
     }

@@ -2,7 +2,9 @@
 //!
 //! By Stokes's theorem, twice (Sparrow 1963),
 //!
-//!     A_i F_ij = 1/(2 pi) sum over sides p of i and q of j of (p.q) integral of integral of ln r ds dt
+//! ```text
+//! A_i F_ij = 1/(2 pi) sum over sides p of i and q of j of (p.q) integral of integral of ln r ds dt
+//! ```
 //!
 //! with unit vectors p, q along the sides. The inner integral has a closed form, u ln sqrt(u^2 + h^2) - u + h atan(u/h) between the ends of q, where u runs along q
 //! and h is the distance from its line; the outer one is done by Gauss-Kronrod rules: of 3 and 7 points, or of 7 and 15 on halved intervals. Its

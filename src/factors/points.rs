@@ -68,7 +68,7 @@ impl PointFactors {
 /// let scene = Scene::builder().mesh(&square, &[vec![0, 1, 2, 3]], Material::new("grey")).build()?;
 /// let solver = PointSolver::new(SceneOrder::new(&scene), By::Object);
 /// let up = Domain::Hemisphere(DVec3::Z);
-/// let points: Vec<_> = [0.0, 5.0].map(|x| (Viewpoint::free(DVec3::new(x, 0.0, 0.0)), up)).to_vec();
+/// let points: Vec<_> = [0.0, 5.0].map(|x| (Viewpoint::free(DVec3::new(x, 0.0, 0.0)), up.clone())).to_vec();
 /// let all = solver.solve_all(&points)?;
 /// assert!((all[0].factors[0].1 - 0.5541).abs() < 1e-4 && all[1].background > 0.99);
 /// assert!(all.iter().all(|point| (point.total() - 1.0).abs() < 1e-15));

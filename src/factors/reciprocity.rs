@@ -3,7 +3,9 @@
 //! A row is computed apart from the others, so that `A_i F_ij` and `A_j F_ji` are two measurements of one exchange, with errors that are estimated. The exchanges
 //! that fit all of these best, by squares of differences over those estimates, and make every row sum to 1, are
 //!
-//!     x_ij = m_ij + v_ij (l_i + l_j)
+//! ```text
+//! x_ij = m_ij + v_ij (l_i + l_j)
+//! ```
 //!
 //! with the weighted mean m and its variance v of the two, and a number l for each row, from as many linear equations (as in Larsen and Howell, "Least-squares smoothing of direct-exchange
 //! areas in zonal analysis", 1986). What would become negative is 0 instead, and the rest is fitted again.

@@ -16,8 +16,37 @@
 use super::unit::{UnitDirection, arcs};
 use glam::DVec3;
 
+/// A unit vector, as precise as it may be.
+pub(super) trait Vertex {
+    /// To `f64`.
+    fn rounded(&self) -> DVec3;
+    /// The difference, as precise as the vectors are.
+    fn minus(&self, other: &Self) -> DVec3;
+}
+
+impl Vertex for UnitDirection {
+    fn rounded(&self) -> DVec3 {
+        self.rounded()
+    }
+
+    fn minus(&self, other: &Self) -> DVec3 {
+        self.minus(other)
+    }
+}
+
+/// Corners that are known to `f64` only.
+impl Vertex for DVec3 {
+    fn rounded(&self) -> DVec3 {
+        *self
+    }
+
+    fn minus(&self, other: &Self) -> DVec3 {
+        *self - *other
+    }
+}
+
 /// Twice the integral of u over a polygon given by its outline.
-pub(super) fn double_flux(outline: &[UnitDirection]) -> DVec3 {
+pub(super) fn double_flux<V: Vertex>(outline: &[V]) -> DVec3 {
     let Some(origin) = outline.first() else {
         return DVec3::ZERO;
     };

@@ -1,5 +1,6 @@
 //! The integrals against closed forms and against cubature in a plane chart.
 
+use super::brute::gauss;
 use super::{UnitDirection, form_factor, form_factor_of_units, solid_angle, solid_angle_of_units};
 use glam::DVec3;
 use num_rational::BigRational;
@@ -9,21 +10,6 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 fn close(value: f64, expected: f64, error: f64) {
     assert!((value - expected).abs() <= error, "{value:e} instead of {expected:e}: off by {:e}", value - expected);
-}
-
-/// Ten points and weights of Gauss and Legendre on 0..1.
-fn gauss() -> [(f64, f64); 10] {
-    let half = [
-        (0.148_874_338_981_631_2, 0.295_524_224_714_752_87),
-        (0.433_395_394_129_247_2, 0.269_266_719_309_996_4),
-        (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
-        (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
-        (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
-    ];
-    std::array::from_fn(|k| {
-        let (x, weight) = half[k / 2];
-        (if k % 2 == 0 { 0.5 + 0.5 * x } else { 0.5 - 0.5 * x }, 0.5 * weight)
-    })
 }
 
 /// A polygon in the plane z = 1 and integrals over it: every number in it is exact, so this knows

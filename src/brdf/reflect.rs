@@ -1,0 +1,156 @@
+//! Integrals of BRDF times cosine times radiance over convex spherical polygons, each form in its own way.
+
+use super::{Form, Lobe, RgbEstimate};
+use crate::integral::{
+    Cubature, CubatureOptions, Peak, Smoothness, clip, double_axis_moment, form_factor, perimeter, unit_outline,
+};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+use std::ops::{AddAssign, Mul};
+
+impl AddAssign for RgbEstimate {
+    fn add_assign(&mut self, other: Self) {
+        self.value += other.value;
+        self.error += other.error;
+    }
+}
+
+/// Times colours that are not negative.
+impl Mul<DVec3> for RgbEstimate {
+    type Output = Self;
+
+    fn mul(self, factor: DVec3) -> Self {
+        Self { value: self.value * factor, error: self.error * factor }
+    }
+}
+
+/// A convex polygon of directions in the surface's frame, and the radiance that comes from it.
+pub(super) struct Lit {
+    outline: Vec<DVec3>,
+    radiance: DVec3,
+}
+
+impl Lit {
+    /// What of a polygon is above the horizon; `None` if nothing is.
+    pub(super) fn new(boundary: &[DVec3], radiance: DVec3) -> Option<Self> {
+        let outline = clip(&unit_outline(boundary), DVec3::Z);
+        (outline.len() > 2).then_some(Self { outline, radiance })
+    }
+
+    /// No direction of it has a larger cosine to an axis.
+    fn largest_cosine(&self, axis: DVec3) -> f64 {
+        let Some(centre) = self.outline.iter().sum::<DVec3>().try_normalize() else { return 1.0 };
+        let reach = self.outline.iter().fold(1.0_f64, |reach, v| reach.min(v.dot(centre)));
+        let off = axis.dot(centre);
+        if reach <= 0.0 || off >= reach {
+            return 1.0;
+        }
+        // The cosine of the difference of the two angles, and some rounding.
+        let sine = |cosine: f64| (1.0 - cosine * cosine).max(0.0).sqrt();
+        off * reach + sine(off) * sine(reach) + 1e-12
+    }
+}
+
+/// All that light comes from.
+pub(super) struct Surroundings<'a> {
+    pub(super) lit: &'a [Lit],
+    /// The radiance from one direction.
+    pub(super) from: &'a dyn Fn(DVec3) -> RgbEstimate,
+}
+
+/// The radiance reflected towards `outgoing` by a BRDF of that form and with those values by incoming direction.
+pub(super) fn reflect(
+    form: Form<'_>,
+    eval: &dyn Fn(DVec3) -> DVec3,
+    outgoing: DVec3,
+    surroundings: &Surroundings<'_>,
+    options: CubatureOptions,
+) -> RgbEstimate {
+    match form {
+        Form::Lobes(lobes) => {
+            let mut sum = RgbEstimate::default();
+            for lobe in lobes {
+                sum += of_lobe(&lobe, surroundings.lit, options);
+            }
+            sum
+        }
+        Form::Dirac { direction, reflectance } => (surroundings.from)(direction) * reflectance,
+        Form::Sum(parts) => {
+            let mut sum = RgbEstimate::default();
+            for part in parts {
+                let eval = |incoming| part.eval(incoming, outgoing);
+                sum += reflect(part.form(outgoing), &eval, outgoing, surroundings, options);
+            }
+            sum
+        }
+        Form::General { peaks, creases, smoothness } => {
+            by_cubature(eval, (&peaks, &creases, smoothness), surroundings.lit, options)
+        }
+    }
+}
+
+/// By moments; by cubature where the bound on their error, which is absolute, is more than what is allowed and than cubature's.
+fn of_lobe(lobe: &Lobe, lit: &[Lit], options: CubatureOptions) -> RgbEstimate {
+    let mut sum = RgbEstimate::default();
+    for part in lit {
+        let (value, error) = if lobe.power == 0 {
+            let factor = form_factor(&part.outline, DVec3::Z);
+            // As it states, and for corners rounded to units of f64.
+            let rim = perimeter(&part.outline);
+            (PI * factor, 2e-16 * PI * (factor + rim * rim.min(PI)) + 2.0 * f64::EPSILON * rim)
+        } else {
+            // Of the lobe's tail a bound is enough.
+            let bound = TAU * part.largest_cosine(lobe.axis).max(0.0).powi(i32::from(lobe.power));
+            if bound < NOTHING {
+                (0.0, bound)
+            } else {
+                let moment = double_axis_moment(&part.outline, lobe.axis, lobe.power, DVec3::Z);
+                (moment.value, moment.error)
+            }
+        };
+        sum += RgbEstimate { value: DVec3::splat(value), error: DVec3::splat(error) } * (part.radiance * lobe.weight);
+    }
+    let allowed = options.absolute.max(options.relative * sum.value.max_element());
+    if lobe.power == 0 || sum.error.max_element() <= allowed {
+        return sum;
+    }
+    let other =
+        by_cubature(&|incoming| lobe.eval(incoming), (&[lobe.peak()], &[lobe.axis], Smoothness::Smooth), lit, options);
+    if other.error.max_element() < sum.error.max_element() { other } else { sum }
+}
+
+/// A moment below that is not computed: less than the error of one that is.
+const NOTHING: f64 = 1e-18;
+
+fn by_cubature(
+    eval: &dyn Fn(DVec3) -> DVec3,
+    (peaks, creases, smoothness): (&[Peak], &[DVec3], Smoothness),
+    lit: &[Lit],
+    options: CubatureOptions,
+) -> RgbEstimate {
+    let mut cubature = Cubature::new(|incoming: DVec3| eval(incoming) * incoming.z.max(0.0), peaks, smoothness);
+    for part in lit {
+        let mut outlines = vec![part.outline.clone()];
+        for &crease in creases {
+            outlines = outlines.iter().flat_map(|outline| [clip(outline, crease), clip(outline, -crease)]).collect();
+        }
+        for outline in &outlines {
+            cubature.add(outline, part.radiance);
+        }
+    }
+    let integral = cubature.run(options);
+    RgbEstimate { value: integral.value, error: integral.error }
+}
+
+/// The radiance reflected from a white hemisphere.
+pub(super) fn white_furnace(
+    form: Form<'_>,
+    eval: &dyn Fn(DVec3) -> DVec3,
+    outgoing: DVec3,
+    options: CubatureOptions,
+) -> RgbEstimate {
+    let hemisphere = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
+    let lit: Vec<Lit> = Lit::new(&hemisphere, DVec3::ONE).into_iter().collect();
+    let white = |_| RgbEstimate { value: DVec3::ONE, error: DVec3::ZERO };
+    reflect(form, eval, outgoing, &Surroundings { lit: &lit, from: &white }, options)
+}
