@@ -69,7 +69,7 @@ pub(crate) struct FormFactors {
     /// Go on with an interrupted run, whose rows are in FILE.partial; the result is the same, byte by byte
     #[arg(long, requires = "output")]
     resume: bool,
-    /// Change factors so that A_i F_ij = A_j F_ji and all rows sum to 1, as little as their estimates allow (least squares); how
+    /// Change factors so that exchange is the same both ways and all rows sum to 1, as little as their estimates allow (least squares); how
     /// much is told. All rows are in memory
     #[arg(long, requires = "output", conflicts_with_all = ["rows", "resume", "two_sided"])]
     enforce_reciprocity: bool,
