@@ -129,7 +129,8 @@ impl ElementRows<'_> {
         };
         space.parts = parts(from, &elements.frames[from.facet as usize], around.contacts());
         space.around = Some(around);
-        let allowed = tolerance * (1.0 - OF_TOLERANCE);
+        // What is placed of a residue comes on top, by as much at most.
+        let allowed = tolerance * (0.5 - OF_TOLERANCE);
         let mut division = if effort.towards_sides { Division::TowardsSides } else { Division::None };
         self.classify(number, tolerance * OF_TOLERANCE, space);
         self.integrate_all(number, allowed, space);
@@ -262,6 +263,7 @@ impl ElementRows<'_> {
                 receiver,
                 blockers: blockers.collect(),
             };
+            hidden.start(&target);
             let look = |point: DVec3, add: Add<'_>| {
                 add(0, target.factor(point, hidden));
                 Ok::<(), Infallible>(())

@@ -30,6 +30,23 @@ pub(super) struct HiddenSpace {
     free: Vec<Vec<DVec2>>,
     lines: Vec<HalfPlane>,
     corners: Vec<DVec3>,
+    /// The blockers, those that have cut something off lately first.
+    order: Vec<Tried>,
+}
+
+/// A blocker, and which of its lines has last had all of the element outside: that is tried first.
+#[derive(Clone, Copy)]
+struct Tried {
+    blocker: u32,
+    line: u32,
+}
+
+impl HiddenSpace {
+    /// Forgets what was seen of another element.
+    pub(super) fn start(&mut self, target: &Target<'_>) {
+        self.order.clear();
+        self.order.extend((0..target.blockers.len() as u32).map(|blocker| Tried { blocker, line: 0 }));
+    }
 }
 
 /// Where `along . p + offset` is not negative.
@@ -56,12 +73,12 @@ impl HalfPlane {
 }
 
 impl Target<'_> {
-    /// The form factor of what is seen of the element's front from a point.
+    /// The form factor of what is seen of the element's front from a point. `space` is started with this target.
     pub(super) fn factor(&self, point: DVec3, space: &mut HiddenSpace) -> f64 {
         if self.frame.height(point) <= 0.0 {
             return 0.0;
         }
-        let HiddenSpace { parts, next, free, lines, corners } = space;
+        let HiddenSpace { parts, next, free, lines, corners, order } = space;
         let mut whole = free.pop().unwrap_or_default();
         whole.clear();
         match self.horizon {
@@ -72,22 +89,15 @@ impl Target<'_> {
             }
         }
         parts.push(whole);
-        for &(ring, plane) in &self.blockers {
-            let height = plane.height(point);
-            if height == 0.0 {
+        for k in 0..order.len() {
+            if !self.shadow(point, &mut order[k], parts, lines) {
                 continue;
-            }
-            lines.clear();
-            let behind = HalfPlane::of(plane.normal, plane.origin, self.frame);
-            lines.push(if height > 0.0 { behind.turned() } else { behind });
-            for [a, b] in super::shape::sides(ring) {
-                let inside = (a - point).cross(b - point);
-                lines.push(HalfPlane::of(if height > 0.0 { -inside } else { inside }, point, self.frame));
             }
             for part in parts.drain(..) {
                 cut_off(part, lines, next, free);
             }
             std::mem::swap(parts, next);
+            order[..=k].rotate_right(1);
             if parts.is_empty() {
                 return 0.0;
             }
@@ -102,6 +112,38 @@ impl Target<'_> {
             free.push(part);
         }
         sum
+    }
+}
+
+impl Target<'_> {
+    /// Finds the half planes that a blocker's shadow is in, seen from a point; false if one of them has all parts outside.
+    fn shadow(&self, point: DVec3, tried: &mut Tried, parts: &[Vec<DVec2>], lines: &mut Vec<HalfPlane>) -> bool {
+        let (ring, plane) = self.blockers[tried.blocker as usize];
+        let height = plane.height(point);
+        let line = |k: usize| {
+            if k == 0 {
+                let behind = HalfPlane::of(plane.normal, plane.origin, self.frame);
+                return if height > 0.0 { behind.turned() } else { behind };
+            }
+            let (a, b) = (ring[k - 1], ring[if k == ring.len() { 0 } else { k }]);
+            let inside = (a - point).cross(b - point);
+            HalfPlane::of(if height > 0.0 { -inside } else { inside }, point, self.frame)
+        };
+        let is_outside = |line: &HalfPlane| parts.iter().flatten().all(|&p| line.height(p) <= 0.0);
+        // From a point in its plane it hides nothing.
+        if height.abs() <= 0.0 || is_outside(&line(tried.line as usize)) {
+            return false;
+        }
+        lines.clear();
+        for k in 0..=ring.len() {
+            let line = line(k);
+            if is_outside(&line) {
+                tried.line = k as u32;
+                return false;
+            }
+            lines.push(line);
+        }
+        true
     }
 }
 
