@@ -6,6 +6,7 @@
 
 use super::unit::{UnitDirection, arcs, outline};
 use crate::contour::{Cell, ContourImage, Precise};
+use crate::exact::U;
 use crate::exact::double::{Double, Double3, cross, dot, minus};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -21,7 +22,8 @@ impl Bounded {
     /// The form factor of a cell with these rounded corners, computed in `f64`.
     ///
     /// An arc whose ends are off by e changes the integral of n.u / pi by at most its length times e times n.u there. To this comes what the
-    /// formula rounds: 2e-16 times the perimeter and the diameter, which is at most half the perimeter; and as much of the value.
+    /// formula rounds: 2e-16 times the perimeter and the diameter, which is at most half the perimeter; and as much of the value. The lengths of corners are rounded, too:
+    /// by a few units in the last place, which turned by 90 degrees along the arcs beside them counts fully, however low above the horizon they are.
     pub(super) fn of(cell: Cell<'_>, corners: &[DVec3], normal: DVec3, value: f64) -> Self {
         let [mut perimeter, mut moment] = [0.0f64; 2];
         let mut former = corners.last().map_or(0.0, |&a| normal.dot(a).abs());
@@ -35,7 +37,7 @@ impl Bounded {
             (former, from) = (height, corner);
         }
         let off = cell.corner_error();
-        let error = off * (moment + off * perimeter) / PI + 1e-16 * perimeter * perimeter;
+        let error = off * (moment + off * perimeter) / PI + 1e-16 * perimeter * perimeter + 4.0 * U * perimeter / PI;
         Self { value, error: error + 2e-16 * value }
     }
 
