@@ -326,9 +326,9 @@ impl Totals {
 pub(super) enum Division {
     /// Not at all: 5 points a quadrilateral.
     None,
-    /// Into 4 to this power: 17 points each.
+    /// Into 4 to this power: 25 points each.
     Alike(u32),
-    /// Into layers that come closer and closer to the sides, where what is near in contact with others changes most: some 8,000 points.
+    /// Into layers that come closer and closer to the sides, where what is near in contact with others changes most: 10,000 points.
     TowardsSides,
 }
 
