@@ -399,6 +399,50 @@ impl Directions {
         x
     }
 
+    /// The point of the scene, or one that the 3D BSP made, that a direction leads to, if it was made for one.
+    pub(crate) fn point(&self, d: DirectionId) -> Option<PointId> {
+        match self.definitions[d.0 as usize] {
+            DirectionDef::Point(point) => Some(point),
+            DirectionDef::Towards(_) | DirectionDef::Crossing { .. } => None,
+        }
+    }
+
+    /// Where the ray in a direction meets a plane that it does meet, rounded.
+    pub(crate) fn point_on_plane(
+        &self,
+        skeleton: &Skeleton,
+        d: DirectionId,
+        plane: PlaneId,
+        cache: &mut ExactCache,
+    ) -> DVec3 {
+        let [x, m, n] = match self.definitions[d.0 as usize] {
+            DirectionDef::Point(point) => [Some(self.exact_point(skeleton, point, cache)), None, None],
+            DirectionDef::Towards(point) => [Some(self.exact_towards(point, cache)), None, None],
+            DirectionDef::Crossing { circles: [m, n], reversed } => {
+                let [m, n] = if reversed { [n, m] } else { [m, n] };
+                [None, Some(self.exact_normal(skeleton, m, cache)), Some(self.exact_normal(skeleton, n, cache))]
+            }
+        };
+        let arena = &mut cache.arena;
+        let mark = arena.mark();
+        let direction = match (x, m, n) {
+            (None, Some(m), Some(n)) => {
+                let [m, n] = [m, n].map(|normal| arena.numbers(&normal));
+                arena.cross(m, n)
+            }
+            (Some(x), ..) => arena.numbers(&x),
+            _ => unreachable!("a direction is a point or a crossing"),
+        };
+        let (normal, height) = Constructor { frame: &self.frame, arena }.plane(&skeleton.resolved_plane(plane));
+        // normal . (s x) = -height.
+        let along = arena.dot(normal, direction);
+        let sign = along.sign();
+        let point = arena.scale3(height.negated().times_sign(sign), direction);
+        let (position, _) = self.frame.position(arena, point, along.times_sign(sign));
+        arena.release(mark);
+        position
+    }
+
     /// On which side of the great circle a direction given by three numbers lies, exactly.
     pub(crate) fn given_side(&self, skeleton: &Skeleton, d: DVec3, c: CircleId, cache: &mut ExactCache) -> Sign {
         if let Some(sign) = Approx3::given(d).dot_sign(&self.normals[c.0 as usize]) {
