@@ -38,6 +38,13 @@ pub(crate) struct LooseDirection {
     approx: Approx3,
 }
 
+impl LooseDirection {
+    /// As a unit vector.
+    pub(crate) fn unit(&self) -> DVec3 {
+        self.approx.v.normalize_or_zero()
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum DirectionDef {
     /// From the eye to a point.
@@ -397,6 +404,15 @@ impl Directions {
         let x = Constructor { frame: &self.frame, arena: &mut cache.arena }.keep_direction(&direction);
         cache.towards.insert(key, x);
         x
+    }
+
+    /// Whether the normals of two names of one great circle point the same way.
+    pub(crate) fn same_way(&self, skeleton: &Skeleton, a: CircleId, b: CircleId, cache: &mut ExactCache) -> Sign {
+        if a == b {
+            return Sign::Positive;
+        }
+        let [a, b] = [a, b].map(|circle| self.exact_normal(skeleton, circle, cache));
+        cache.arena.kept_dot_sign(&a, &b)
     }
 
     /// The point of the scene, or one that the 3D BSP made, that a direction leads to, if it was made for one.

@@ -8,6 +8,7 @@
 mod certify;
 mod directions;
 mod domain;
+mod edges;
 mod frustum;
 #[cfg(feature = "geo")]
 mod geo;
@@ -32,6 +33,7 @@ mod tests;
 
 pub use crate::scene::Splitter;
 pub use domain::Domain;
+pub use edges::{EdgeStretch, EdgeTracer};
 pub use frustum::{Frustum, FrustumError};
 #[cfg(feature = "geo")]
 pub use geo::GeoRegion;

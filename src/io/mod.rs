@@ -35,6 +35,8 @@ pub mod ply;
 mod point_factors;
 mod points;
 mod quoted;
+#[cfg(feature = "gltf")]
+mod shadow_glb;
 pub mod stl;
 mod svg;
 #[cfg(any(feature = "cityjson", feature = "gltf", feature = "json"))]
@@ -55,8 +57,10 @@ pub use error::{Fault, Faults, Place, ReadError};
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
-pub use svg::{SvgOptions, write_svg};
-pub use visible_obj::{fragment_groups, visible_groups};
+#[cfg(feature = "gltf")]
+pub use shadow_glb::shadow_meshes;
+pub use svg::{DrawingCounts, DrawingOptions, Fill, SvgOptions, write_drawing, write_svg};
+pub use visible_obj::{fragment_groups, shadow_groups, visible_groups};
 
 use crate::scene::{Repair, Scene};
 use formats::Format;

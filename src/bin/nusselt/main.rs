@@ -3,6 +3,7 @@
 mod args;
 mod compare;
 mod contour;
+mod draw;
 mod failure;
 mod form_factors;
 mod info;
@@ -14,6 +15,7 @@ mod progress;
 mod proof;
 mod repairs;
 mod scene;
+mod shadows;
 mod summary;
 mod verify;
 
@@ -39,6 +41,8 @@ enum Command {
     PointFactors(point_factors::PointFactorsOf),
     #[command(name = "form-factors")]
     FormFactors(form_factors::FormFactors),
+    Draw(draw::Draw),
+    Shadows(shadows::ShadowsOf),
     Compare(compare::Compare),
     Verify(verify::Verify),
     Scene(scene::Scene),
@@ -51,6 +55,8 @@ impl Command {
             Self::Contour(command) => command.run(common),
             Self::PointFactors(command) => command.run(common),
             Self::FormFactors(command) => command.run(common),
+            Self::Draw(command) => command.run(common),
+            Self::Shadows(command) => command.run(common),
             Self::Compare(command) => command.run(common),
             Self::Verify(command) => command.run(common),
             Self::Scene(command) => command.run(common),

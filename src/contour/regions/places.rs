@@ -63,8 +63,8 @@ pub(crate) struct Places {
     /// Where the sides of each face start.
     pub(crate) face_sides: Vec<u32>,
     pub(crate) all: Vec<Place>,
-    /// Where the places of each track start.
-    track_places: Vec<u32>,
+    /// Where those of each track start.
+    starts: Vec<u32>,
     /// One of the places of each vertex.
     pub(crate) vertices: Vec<u32>,
 }
@@ -79,7 +79,7 @@ impl Places {
         track: impl FnMut(&Mosaic<'_>, u32, PolygonArc, u32) -> u32,
     ) -> Self {
         let (mut sides, face_sides, mut ends) = sides_of(mosaic, circles, track);
-        let (mut all, track_places) = places_of(mosaic, circles, tracks, &mut sides, &mut ends);
+        let (mut all, starts) = places_of(mosaic, circles, tracks, &mut sides, &mut ends);
         let mut same = Sets::new(all.len());
         for range in face_sides.windows(2) {
             let face = &sides[range[0] as usize..range[1] as usize];
@@ -97,7 +97,7 @@ impl Places {
                 all[first as usize].vertex
             };
         }
-        Self { sides, face_sides, all, track_places, vertices }
+        Self { sides, face_sides, all, starts, vertices }
     }
 
     /// The sides of a face.
@@ -108,17 +108,17 @@ impl Places {
     /// The next place on its track.
     pub(crate) fn next(&self, place: u32) -> u32 {
         let track = self.all[place as usize].track as usize;
-        if place + 1 == self.track_places[track + 1] { self.track_places[track] } else { place + 1 }
+        if place + 1 == self.starts[track + 1] { self.starts[track] } else { place + 1 }
     }
 
     pub(crate) fn previous(&self, place: u32) -> u32 {
         let track = self.all[place as usize].track as usize;
-        if place == self.track_places[track] { self.track_places[track + 1] - 1 } else { place - 1 }
+        if place == self.starts[track] { self.starts[track + 1] - 1 } else { place - 1 }
     }
 
     /// The places of a track.
     pub(crate) fn on(&self, track: u32) -> std::ops::Range<u32> {
-        self.track_places[track as usize]..self.track_places[track as usize + 1]
+        self.starts[track as usize]..self.starts[track as usize + 1]
     }
 }
 

@@ -1,7 +1,10 @@
 //! Contour images as SVG: what is seen, in flat colours, with thin outlines.
 
+mod drawing;
 mod lines;
 mod paint;
+
+pub use drawing::{DrawingCounts, DrawingOptions, Fill, write_drawing};
 
 use crate::contour::{CellId, ContourImage, Projection, Projector};
 use crate::scene::PolygonId;

@@ -54,7 +54,7 @@ fn variation(k: u32) -> f64 {
 }
 
 /// Linear RGB as the web writes colours.
-fn hex(linear: DVec3) -> String {
+pub(super) fn hex(linear: DVec3) -> String {
     let [r, g, b] = linear.to_array().map(|c| {
         let c = c.clamp(0.0, 1.0);
         let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };

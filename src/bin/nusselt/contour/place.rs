@@ -2,9 +2,8 @@
 
 use super::Contour;
 use crate::failure::Failure;
-use crate::place::hemisphere;
-use glam::DVec3;
-use nusselt::contour::{Domain, Frustum, FrustumError, SurfaceError, Viewpoint, Windows};
+use crate::place::{camera, hemisphere};
+use nusselt::contour::{Domain, Frustum, SurfaceError, Viewpoint, Windows};
 use nusselt::scene::{PolygonId, Scene, Side};
 
 impl Contour {
@@ -19,25 +18,7 @@ impl Contour {
                 None => Ok(None),
             };
         };
-        let aspect = self.aspect.unwrap_or(1.0);
-        // Halves, so that no difference overflows.
-        let towards = look_at * 0.5 - self.eye * 0.5;
-        let towards = if towards == DVec3::ZERO { look_at - self.eye } else { towards };
-        if towards == DVec3::ZERO {
-            return usage("--look-at is --eye; look at another point".to_owned());
-        }
-        let made = match self.up {
-            Some(up) => Frustum::new(towards, up, fov, aspect),
-            None => match Frustum::new(towards, DVec3::Z, fov, aspect) {
-                Err(FrustumError::UpAlong) => Frustum::new(towards, DVec3::Y, fov, aspect),
-                made => made,
-            },
-        };
-        match made {
-            Ok(frustum) => Ok(Some(frustum)),
-            Err(error @ FrustumError::UpAlong) => usage(format!("--up: {error}")),
-            Err(error) => usage(format!("--look-at, --fov and --aspect: {error}")),
-        }
+        camera(self.eye, look_at, fov, self.aspect, self.up).map(Some)
     }
 
     /// Where to stand and what to look at.
