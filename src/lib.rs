@@ -32,6 +32,7 @@
 //! | [`integral`] | solid angles and form factors of cells; moments and cubature over spherical polygons |
 //! | [`brdf`] | reflection: BRDFs, and the radiance reflected from what is seen |
 //! | [`factors`] | form factors from points, and between patches: the matrix, row by row |
+//! | [`radiosity`] | diffuse interreflection: progressive refinement, and radiosities of points |
 //! | [`hemicube`] | baselines to compare with: the hemicube, with analytic form factors too, and rays |
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
 //! | [`io`] | reading scenes, writing results |
@@ -50,6 +51,7 @@ pub mod hemicube;
 pub mod integral;
 pub mod io;
 mod parallel;
+pub mod radiosity;
 pub mod samples;
 pub mod scene;
 #[cfg(feature = "testing")]

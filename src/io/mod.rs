@@ -35,8 +35,11 @@ pub mod ply;
 mod point_factors;
 mod points;
 mod quoted;
+#[cfg(all(feature = "gltf", feature = "json"))]
+pub mod radiosity;
 #[cfg(feature = "gltf")]
 mod shadow_glb;
+mod srgb;
 pub mod stl;
 mod svg;
 #[cfg(any(feature = "cityjson", feature = "gltf", feature = "json"))]

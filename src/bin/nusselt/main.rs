@@ -13,6 +13,7 @@ mod place;
 mod point_factors;
 mod progress;
 mod proof;
+mod radiosity;
 mod repairs;
 mod scene;
 mod shadows;
@@ -41,6 +42,7 @@ enum Command {
     PointFactors(point_factors::PointFactorsOf),
     #[command(name = "form-factors")]
     FormFactors(form_factors::FormFactors),
+    Radiosity(radiosity::Radiosity),
     Draw(draw::Draw),
     Shadows(shadows::ShadowsOf),
     Compare(compare::Compare),
@@ -55,6 +57,7 @@ impl Command {
             Self::Contour(command) => command.run(common),
             Self::PointFactors(command) => command.run(common),
             Self::FormFactors(command) => command.run(common),
+            Self::Radiosity(command) => command.run(common),
             Self::Draw(command) => command.run(common),
             Self::Shadows(command) => command.run(common),
             Self::Compare(command) => command.run(common),

@@ -1,6 +1,7 @@
 //! The colours of polygons in a picture.
 
 use crate::contour::{ContourImage, ViewFrame};
+use crate::io::srgb::encoded;
 use crate::scene::{PolygonId, PolygonRef, Scene};
 use glam::DVec3;
 
@@ -55,11 +56,7 @@ fn variation(k: u32) -> f64 {
 
 /// Linear RGB as the web writes colours.
 pub(super) fn hex(linear: DVec3) -> String {
-    let [r, g, b] = linear.to_array().map(|c| {
-        let c = c.clamp(0.0, 1.0);
-        let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-        (encoded * 255.0).round() as u8
-    });
+    let [r, g, b] = linear.to_array().map(encoded);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
