@@ -41,8 +41,12 @@ impl Folder {
         serde_json::from_str(&self.run(line, 0)).expect("JSON")
     }
 
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.join(name)
+    }
+
     pub(crate) fn read(&self, name: &str) -> String {
-        fs::read_to_string(self.0.join(name)).expect("written")
+        fs::read_to_string(self.path(name)).expect("written")
     }
 }
 
