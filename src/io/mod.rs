@@ -35,6 +35,7 @@ pub mod ply;
 mod point_factors;
 mod points;
 mod quoted;
+mod sh;
 pub mod stl;
 mod svg;
 #[cfg(any(feature = "cityjson", feature = "gltf", feature = "json"))]
@@ -55,6 +56,7 @@ pub use error::{Fault, Faults, Place, ReadError};
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
+pub use sh::{parse_sh, read_sh, write_sh};
 pub use svg::{SvgOptions, write_svg};
 pub use visible_obj::{fragment_groups, visible_groups};
 
