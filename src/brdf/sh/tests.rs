@@ -17,7 +17,7 @@ impl Brdf for Polynomial {
     fn eval(&self, u: DVec3, v: DVec3) -> DVec3 {
         let along = u.x * v.x + u.y * v.y;
         let heights = u.z * u.z * v.z * v.z;
-        let twist = self.anisotropy * (u.x * v.x * u.x * v.x + u.y * v.x * u.y * v.x);
+        let twist = self.anisotropy * (u.x * v.x).powi(2);
         RHO * (0.1 + 0.02 * along + 0.03 * along * along + 0.01 * heights + twist) + DVec3::X * (0.01 * along.powi(4))
     }
 
@@ -58,7 +58,7 @@ fn projected() -> Vec<(&'static str, ShBrdf)> {
         ("Lambert", of(&Lambert::new(RHO).unwrap(), ShSymmetry::Isotropic, 0)),
         ("Phong 5", of(&Phong::new(RHO, 5.0).unwrap(), ShSymmetry::Isotropic, 9)),
         ("GGX 0.5", of(&rough, ShSymmetry::Isotropic, 16)),
-        ("GGX 0.5, 64", of(&rough, ShSymmetry::Isotropic, 64)),
+        ("GGX 0.5, 22", of(&rough, ShSymmetry::Isotropic, 22)),
         ("GGX 0.4 0.8", of(&brushed, ShSymmetry::General, 6)),
     ]
 }
@@ -77,7 +77,7 @@ fn white_furnaces_show_the_albedo() {
             assert!(albedo.error.max_element() < 1e-10, "{name} at {degrees}: {albedo:?}");
             assert!((furnace.value - albedo.value).abs().cmple(furnace.error + albedo.error).all(), "{name}");
             let series = brdf.series(outgoing);
-            let brute = polar(DVec3::X, 40, &|u| series.eval(u) * u.z);
+            let brute = polar(DVec3::X, 20, &|u| series.eval(u) * u.z);
             assert!((albedo.value - brute).abs().max_element() < 1e-9, "{name} at {degrees}: {albedo:?} {brute}");
         }
     }
@@ -101,7 +101,7 @@ fn closed_forms_are_what_cubature_gives() {
             let surroundings = Surroundings { lit: &lit, from: &from };
             let series = brdf.series(outgoing);
             let eval = |u| series.eval(u);
-            let options = CubatureOptions { relative: 1e-10, absolute: 1e-12, evaluations: 2_000_000 };
+            let options = CubatureOptions { relative: 1e-10, absolute: 1e-12, evaluations: 300_000 };
             let of = |form| reflect(form, &eval, outgoing, &surroundings, options);
             let closed = reflect(
                 brdf.form(outgoing),
@@ -122,7 +122,7 @@ fn closed_forms_are_what_cubature_gives() {
                 &eval,
                 outgoing,
                 &surroundings,
-                CubatureOptions { relative: 1e-9, absolute: 0.0, evaluations: 1_000_000 },
+                CubatureOptions { relative: 1e-9, absolute: 0.0, evaluations: 100_000 },
             );
             assert!(small.error.max_element() <= closed.error.max_element(), "{name} {radius}: {small:?} {closed:?}");
             assert!((small.value - cubature.value).abs().cmple(small.error + cubature.error).all(), "{small:?}");
@@ -185,7 +185,8 @@ fn a_projection_is_the_nearest_series() {
     };
     let low = ShBrdf::project(&rough, ShSymmetry::Isotropic, 4).unwrap().brdf;
     let least = distance(&low);
-    for at in [0, 4, 16, 35] {
+    // Of harmonics with even l + m only.
+    for at in [0, 2, 12, 24, 25, 35] {
         for step in [-0.01, 0.01] {
             let mut moved = low.coefficients().to_vec();
             moved[at] += DVec3::splat(step);
