@@ -1,7 +1,7 @@
 //! Real spherical harmonics, and series of them.
 //!
-//! Y_lm = K_lm P_lm(cos theta) times sqrt(2) cos(m phi) for m > 0, 1 for m = 0, sqrt(2) sin(|m| phi) for m < 0, orthonormal over the sphere, without the phase
-//! of Condon and Shortley: Y_00 = sqrt(1 / 4 pi), and Y_1,-1, Y_10, Y_11 are sqrt(3 / 4 pi) times y, z, x. The index of Y_lm is l (l + 1) + m.
+//! `Y_lm` = `K_lm` `P_lm`(cos theta) times sqrt(2) cos(m phi) for m > 0, 1 for m = 0, sqrt(2) sin(|m| phi) for m < 0, orthonormal over the sphere, without the phase
+//! of Condon and Shortley: `Y_00` = sqrt(1 / 4 pi), and `Y_1,-1`, `Y_10`, `Y_11` are sqrt(3 / 4 pi) times y, z, x. The index of `Y_lm` is l (l + 1) + m.
 
 use glam::DVec3;
 use std::f64::consts::{PI, SQRT_2};
@@ -11,12 +11,12 @@ pub(crate) fn count(band: u16) -> usize {
     (usize::from(band) + 1) * (usize::from(band) + 1)
 }
 
-/// The index of Y_lm, |m| <= l.
+/// The index of `Y_lm`, |m| <= l.
 pub(crate) fn index(l: u16, m: i32) -> usize {
     (i32::from(l) * (i32::from(l) + 1) + m) as usize
 }
 
-/// All real spherical harmonics of a unit `direction` to that band: (band + 1)^2 numbers, that of Y_lm at l (l + 1) + m.
+/// All real spherical harmonics of a unit `direction` to that band: (band + 1)^2 numbers, that of `Y_lm` at l (l + 1) + m.
 ///
 /// Their errors are a few times l units of 1e-16. O(band^2).
 ///
@@ -54,7 +54,7 @@ pub fn harmonics(direction: DVec3, band: u16) -> Vec<f64> {
     values
 }
 
-/// z Y_lm = ladder(l + 1) Y_(l+1)m + ladder(l) Y_(l-1)m, with ladder(l)^2 = (l^2 - m^2) / (4 l^2 - 1).
+/// z `Y_lm` = ladder(l + 1) `Y_(l+1)m` + ladder(l) `Y_(l-1)m`, with ladder(l)^2 = (l^2 - m^2) / (4 l^2 - 1).
 fn ladder(l: u16, m: u16) -> f64 {
     let (l, m) = (f64::from(l), f64::from(m));
     ((l * l - m * m) / (4.0 * l * l - 1.0)).sqrt()
@@ -68,7 +68,7 @@ pub struct Harmonics {
 }
 
 impl Harmonics {
-    /// To that band, of (band + 1)^2 coefficients, that of Y_lm at l (l + 1) + m; of any other number it is `None`.
+    /// To that band, of (band + 1)^2 coefficients, that of `Y_lm` at l (l + 1) + m; of any other number it is `None`.
     pub fn new(band: u16, coefficients: Vec<DVec3>) -> Option<Self> {
         (coefficients.len() == count(band)).then_some(Self { band, coefficients })
     }
@@ -78,7 +78,7 @@ impl Harmonics {
         self.band
     }
 
-    /// The coefficient of Y_lm at l (l + 1) + m.
+    /// The coefficient of `Y_lm` at l (l + 1) + m.
     pub fn coefficients(&self) -> &[DVec3] {
         &self.coefficients
     }

@@ -106,12 +106,12 @@ impl LongArc {
 /// What rounding may leave of a zonal integral of degree l >= 1 over an outline in units of `f64::EPSILON`, by an arc: for arcs whose normals have the cosines h
 /// to the axis it is the sum of |h| (`fixed` + `by_length` theta).
 ///
-/// *What goes in.* P_l of an end is off by 3 (l + l^2 / 4): each step of its recurrence adds at most 3, and one of step k has grown by no more than
-/// 1 + k log(l / k) (the solution is bounded by its value at 1). An end itself is off by 4, which changes P_l g' by at most 4 l (Bernstein). So the bracket, times
-/// 2 / l, brings 48 + 3 l into C_l, and its other terms, of size theta, bring 8 theta; D_l gets twice its own rounding.
+/// *What goes in.* `P_l` of an end is off by 3 (l + l^2 / 4): each step of its recurrence adds at most 3, and one of step k has grown by no more than
+/// 1 + k log(l / k) (the solution is bounded by its value at 1). An end itself is off by 4, which changes `P_l` g' by at most 4 l (Bernstein). So the bracket, times
+/// 2 / l, brings 48 + 3 l into `C_l`, and its other terms, of size theta, bring 8 theta; `D_l` gets twice its own rounding.
 ///
-/// *What comes out.* The response of Z_l to an error of 1 in each C_k depends on nothing but h. Its sum over k, the largest for 2,001 values of h from 0 to 1, was
-/// computed for all l to 65, and is at most 0.35 + 0.08 l; to a relative error of 1 in each D_k it is 1.5 theta + l^2 theta / 43.
+/// *What comes out.* The response of `Z_l` to an error of 1 in each `C_k` depends on nothing but h. Its sum over k, the largest for 2,001 values of h from 0 to 1, was
+/// computed for all l to 65, and is at most 0.35 + 0.08 l; to a relative error of 1 in each `D_k` it is 1.5 theta + l^2 theta / 43.
 pub(super) struct Rounding {
     pub(super) fixed: f64,
     pub(super) by_length: f64,

@@ -1,8 +1,8 @@
 //! Integrals of series of spherical harmonics over spherical polygons, in closed form.
 //!
-//! By the addition theorem any function of band l is a sum of Legendre polynomials about 2 l + 1 axes w_k in general position:
-//! with sum over k of alpha_k Y_lm(w_k) = (2 l + 1) / (4 pi) a_lm it is sum over k of alpha_k P_l(w_k.u), and its integral the same
-//! sum of zonal integrals Z_l(w_k) (Wang and Ramamoorthi, "Analytic spherical harmonic coefficients for polygonal area lights", 2018).
+//! By the addition theorem any function of band l is a sum of Legendre polynomials about 2 l + 1 axes `w_k` in general position:
+//! with sum over k of `alpha_k` `Y_lm(w_k)` = (2 l + 1) / (4 pi) `a_lm` it is sum over k of `alpha_k` `P_l(w_k.u)`, and its integral the same
+//! sum of zonal integrals `Z_l(w_k)` (Wang and Ramamoorthi, "Analytic spherical harmonic coefficients for polygonal area lights", 2018).
 //!
 //! One set of 2 n + 1 axes serves all bands to n: the zonal integrals of all degrees about an axis come with one recurrence. Of the solutions alpha of lower bands,
 //! of which there are many, the smallest is taken. The axes are chosen once per n among many well-spread ones, each to be as independent as can be of
@@ -21,7 +21,7 @@ use std::sync::{Arc, OnceLock};
 pub struct ZonalSum {
     axes: Arc<Axes>,
     band: u16,
-    /// The factors of P_l about axis k: at k (band + 1) + l.
+    /// The factors of `P_l` about axis k: at k (band + 1) + l.
     factors: Vec<DVec3>,
     /// No value of the series is larger.
     largest: DVec3,
@@ -137,7 +137,7 @@ impl Axes {
         let values: Vec<Vec<f64>> = (0..=band)
             .map(|l| {
                 let from = usize::from(l) * usize::from(l);
-                all.iter().flat_map(|row| row[from..from + 2 * usize::from(l) + 1].iter().copied()).collect()
+                all.iter().flat_map(|row| row[from..=from + 2 * usize::from(l)].iter().copied()).collect()
             })
             .collect();
         let inverses =
@@ -184,31 +184,36 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 fn transposed_pseudo_inverse(matrix: &[f64], width: usize) -> Vec<f64> {
     let height = matrix.len() / width;
     let mut columns: Vec<Vec<f64>> = (0..width).map(|j| (0..height).map(|k| matrix[k * width + j]).collect()).collect();
+    // By columns.
     let mut upper = vec![vec![0.0; width]; width];
-    for j in 0..width {
+    for (j, entries) in upper.iter_mut().enumerate() {
         let (done, rest) = columns.split_at_mut(j);
         let column = &mut rest[0];
         // Gram and Schmidt, twice for the digits.
         for _ in 0..2 {
             for (i, other) in done.iter().enumerate() {
                 let product = dot(column, other);
-                upper[i][j] += product;
+                entries[i] += product;
                 column.iter_mut().zip(other).for_each(|(value, &o)| *value -= product * o);
             }
         }
         let norm = dot(column, column).sqrt();
-        upper[j][j] = norm;
-        column.iter_mut().for_each(|value| *value /= norm);
+        entries[j] = norm;
+        for value in column.iter_mut() {
+            *value /= norm;
+        }
     }
     // X R^T = Q: the last column first.
     for j in (0..width).rev() {
         let (before, after) = columns.split_at_mut(j + 1);
         let column = &mut before[j];
         for (i, other) in after.iter().enumerate() {
-            let factor = upper[j][j + 1 + i];
+            let factor = upper[j + 1 + i][j];
             column.iter_mut().zip(other).for_each(|(value, &o)| *value -= factor * o);
         }
-        column.iter_mut().for_each(|value| *value /= upper[j][j]);
+        for value in column.iter_mut() {
+            *value /= upper[j][j];
+        }
     }
     let mut inverse = vec![0.0; matrix.len()];
     for (j, column) in columns.iter().enumerate() {

@@ -26,6 +26,7 @@ mod json;
 mod lines;
 #[cfg(feature = "json")]
 pub mod matrix;
+mod merl;
 pub mod mtl;
 mod number;
 pub mod obj;
@@ -54,6 +55,7 @@ pub use contour_json::{
 pub use error::{Fault, Faults, Place, ReadError};
 #[cfg(feature = "json")]
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
+pub use merl::{parse_merl, read_merl, write_merl};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
 pub use sh::{parse_sh, read_sh, write_sh};

@@ -13,7 +13,7 @@ use glam::DVec3;
 /// What a table of coefficients holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ShSymmetry {
-    /// The BRDF depends on the difference of the azimuths only, and not on its sign: a coefficient c_mlk for every order m and bands l and k of the
+    /// The BRDF depends on the difference of the azimuths only, and not on its sign: a coefficient `c_mlk` for every order m and bands l and k of the
     /// incoming and the outgoing direction, from m to the table's band.
     Isotropic,
     /// Anything: a coefficient for every pair of harmonics.
@@ -40,7 +40,7 @@ impl ShSymmetry {
 }
 
 /// A BRDF as a series of real spherical harmonics of both directions (Westin, Arvo and Torrance, "Predicting reflectance functions from complex surfaces",
-/// SIGGRAPH 1992), without the cosine: sum of c_ij Y_i(u) Y_j(v), with the harmonics of [`harmonics`](crate::integral::harmonics()).
+/// SIGGRAPH 1992), without the cosine: sum of `c_ij` `Y_i(u)` `Y_j(v)`, with the harmonics of [`harmonics`](crate::integral::harmonics()).
 ///
 /// Integrals over polygons are in closed form with a bound on their error, the cosine included exactly. *A truncated series may be negative* here and there, and
 /// so may its integral over a small polygon: clamping would make it something else that has no closed form. That it reflects no more than it gets is up to whoever made it.
@@ -94,8 +94,8 @@ impl ShBrdf {
         &self.coefficients
     }
 
-    /// Where c_mlk is in an isotropic table to that band, m <= l, k <= band: by ascending m, then l, then k. It is the factor of
-    /// Y_lm(u) Y_km(v) + Y_l,-m(u) Y_k,-m(v), or of Y_l0(u) Y_k0(v).
+    /// Where `c_mlk` is in an isotropic table to that band, m <= l, k <= band: by ascending m, then l, then k. It is the factor of
+    /// `Y_lm(u)` `Y_km(v)` + `Y_l,-m(u)` `Y_k,-m(v)`, or of `Y_l0(u)` `Y_k0(v)`.
     pub fn index_isotropic(band: u16, m: u16, l: u16, k: u16) -> usize {
         let n = usize::from(band) + 1;
         // The squares of n, n - 1, ... for the orders before.
@@ -104,7 +104,7 @@ impl ShBrdf {
         before + usize::from(l - m) * width + usize::from(k - m)
     }
 
-    /// Where the factor of Y_lm(u) Y_kn(v) is in a general table to that band, |m| <= l and |n| <= k.
+    /// Where the factor of `Y_lm(u)` `Y_kn(v)` is in a general table to that band, |m| <= l and |n| <= k.
     pub fn index_general(band: u16, (l, m): (u16, i32), (k, n): (u16, i32)) -> usize {
         harmonic_index(l, m) * harmonic_count(band) + harmonic_index(k, n)
     }
