@@ -34,7 +34,7 @@ pub fn read_sh(path: &Path) -> Result<ShBrdf, ReadError> {
 /// let text = b"nusselt sh 1\nsymmetry isotropic\nband 0\nentries 1\n0 0 0 2 1 0.5\nend\n";
 /// let brdf = nusselt::io::parse_sh(text, "matt.sh")?;
 /// assert_eq!(brdf.coefficients(), [glam::DVec3::new(2.0, 1.0, 0.5)]);
-/// let error = nusselt::io::parse_sh(&text[..40], "matt.sh").unwrap_err();
+/// let error = nusselt::io::parse_sh(&text[..39], "matt.sh").unwrap_err();
 /// assert_eq!(error.to_string(), "matt.sh:4: there is no line `entries COUNT`; is the file truncated?");
 /// # Ok::<(), nusselt::io::ReadError>(())
 /// ```
