@@ -26,6 +26,7 @@ mod json;
 mod lines;
 #[cfg(feature = "json")]
 pub mod matrix;
+mod merl;
 pub mod mtl;
 mod number;
 pub mod obj;
@@ -37,6 +38,7 @@ mod points;
 mod quoted;
 #[cfg(all(feature = "gltf", feature = "json"))]
 pub mod radiosity;
+mod sh;
 #[cfg(feature = "gltf")]
 mod shadow_glb;
 mod srgb;
@@ -58,8 +60,10 @@ pub use contour_json::{
 pub use error::{Fault, Faults, Place, ReadError};
 #[cfg(feature = "json")]
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
+pub use merl::{parse_merl, read_merl, write_merl};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
+pub use sh::{parse_sh, read_sh, write_sh};
 #[cfg(feature = "gltf")]
 pub use shadow_glb::shadow_meshes;
 pub use svg::{DrawingCounts, DrawingOptions, Fill, SvgOptions, write_drawing, write_svg};
