@@ -33,6 +33,8 @@ pub mod obj;
 #[cfg(feature = "parquet")]
 mod parquet;
 pub mod ply;
+#[cfg(feature = "png")]
+mod png;
 mod point_factors;
 mod points;
 mod quoted;
@@ -61,6 +63,8 @@ pub use error::{Fault, Faults, Place, ReadError};
 #[cfg(feature = "json")]
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use merl::{parse_merl, read_merl, write_merl};
+#[cfg(feature = "png")]
+pub use png::{contour_picture, write_png};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
 pub use sh::{parse_sh, read_sh, write_sh};

@@ -2,7 +2,7 @@
 
 mod drawing;
 mod lines;
-mod paint;
+pub(super) mod paint;
 
 pub use drawing::{DrawingCounts, DrawingOptions, Fill, write_drawing};
 
