@@ -186,7 +186,7 @@ pub(crate) fn summary(rooms: &[Room]) -> String {
     );
     line!(
         text,
-        "That is {} times as long as a hemicube of {first} pixels across, and {} times as long as one of {second}, whose worst form factors above 1e-3 are off by {} and {}.",
+        "That is {} times as long as a hemicube of {first} pixels across, and {} times as long as one of {second}. The worst form factors above 1e-3 of the one are off by {}, those of the other by {}.",
         list(&|room| format!("{:.2}", room.times(boxes, Method::Hemicube { resolution: first }))),
         list(&|room| format!("{:.2}", room.times(boxes, Method::Hemicube { resolution: second }))),
         list(&|room| room.worst(first)),

@@ -6,6 +6,8 @@
 
 mod derived;
 mod figures;
+#[path = "../common/machine.rs"]
+mod machine;
 #[path = "../common/marks.rs"]
 mod marks;
 mod tables;
@@ -46,7 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     let rooms = POLYGONS.map(measure).into_iter().collect::<Result<Vec<_>, _>>()?;
     figures::draw(&rooms, &docs.join("images"))?;
-    page.write(&tables::text(&rooms))?;
+    page.write(&format!("{}\n{}\n", tables::text(&rooms), machine::sentence()))?;
     if let Some(readme) = readme {
         readme.write(&derived::summary(&rooms))?;
     }

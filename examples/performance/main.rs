@@ -8,6 +8,8 @@
 
 mod callgrind;
 mod counts;
+#[path = "../common/machine.rs"]
+mod machine;
 #[path = "../common/marks.rs"]
 mod marks;
 mod moved;
@@ -76,7 +78,7 @@ fn write(docs: &Path, words: &[String]) -> Result<(), Box<dyn Error>> {
         let start = Instant::now();
         let text = part(&docs.join("images"))?;
         // Read anew: another part may have been written.
-        Page::open(&page, name)?.write(&text)?;
+        Page::open(&page, name)?.write(&format!("{text}\n{}\n", machine::sentence()))?;
         eprintln!("{name}: {:.0} s", start.elapsed().as_secs_f64());
     }
     Ok(())
