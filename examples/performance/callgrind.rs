@@ -38,11 +38,12 @@ pub(crate) fn count(work: &[&str], with_caches: bool) -> Result<Profile, Box<dyn
     if with_caches {
         command.args(["--cache-sim=yes", "--LL=2097152,16,64"]);
     }
-    let status = command.arg(std::env::current_exe()?).arg("work").args(work).status()?;
+    let output = command.arg(std::env::current_exe()?).arg("work").args(work).output()?;
     let text = std::fs::read_to_string(&out);
     let _ = std::fs::remove_file(&out);
-    if !status.success() {
-        return Err(format!("valgrind failed on {}: {status}", work.join(" ")).into());
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        return Err(format!("valgrind failed on {}: {}\n{said}", work.join(" "), output.status).into());
     }
     let profile = parse(&text?);
     if profile.total("Ir") == 0 { Err("callgrind counted nothing".into()) } else { Ok(profile) }

@@ -5,7 +5,6 @@ use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
 use nusselt::contour::{Domain, SceneOrder, ViewOptions, ViewSpace, Viewpoint};
 use nusselt::samples::{Kind, generate};
-use nusselt::scene::Scene;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
@@ -25,23 +24,17 @@ pub(crate) fn part(_: &Path) -> Result<String, Box<dyn Error>> {
             let mesh = generate(kind, polygons, 1)?;
             let scene = mesh.to_builder().build()?;
             let points = mesh.free_points(VIEWS, 3);
-            for (way, build) in [("BSP", by_bsp as fn(&Scene) -> _), ("boxes", by_boxes)] {
-                let start = Instant::now();
-                let order = build(&scene)?;
-                write!(text, "| {kind} | {polygons} | {way} | {:.3} ", start.elapsed().as_secs_f64())?;
-                text += &rest(&order, &points)?;
-            }
+            let start = Instant::now();
+            let order = SceneBsp::build(&scene, &BspOptions::default())?.into();
+            write!(text, "| {kind} | {polygons} | BSP | {:.3} ", start.elapsed().as_secs_f64())?;
+            text += &rest(&order, &points)?;
+            let start = Instant::now();
+            let order = SceneBvh::build(&scene).into();
+            write!(text, "| {kind} | {polygons} | boxes | {:.3} ", start.elapsed().as_secs_f64())?;
+            text += &rest(&order, &points)?;
         }
     }
     Ok(text)
-}
-
-fn by_bsp(scene: &Scene) -> Result<SceneOrder, Box<dyn Error>> {
-    Ok(SceneBsp::build(scene, &BspOptions::default())?.into())
-}
-
-fn by_boxes(scene: &Scene) -> Result<SceneOrder, Box<dyn Error>> {
-    Ok(SceneBvh::build(scene).into())
 }
 
 /// The rest of a row; each view in the memory of the one before.
