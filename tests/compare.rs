@@ -6,7 +6,9 @@ use common::Faces;
 use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::contour::{Domain, Viewpoint};
-use nusselt::hemicube::{BaselineError, CompareError, ComparisonRow, Hemicube, Method, Rays, compare, reference};
+use nusselt::hemicube::{
+    BaselineError, CompareError, ComparisonRow, Hemicube, Method, Rays, compare, reference_method,
+};
 use nusselt::samples::{Kind, cornell_box, generate};
 use nusselt::scene::{PolygonId, Scene, Side};
 use std::f64::consts::TAU;
@@ -206,7 +208,7 @@ fn what_an_epsilon_leaves_uncut_is_an_error_of_the_bsp_and_not_of_the_others() {
     let methods = [Method::Contour, Method::ContourByBoxes];
     for (epsilon, exact) in [(0.0, Method::Contour), (0.5, Method::ContourByBoxes)] {
         let bsp = SceneBsp::build(&scene, &BspOptions { epsilon, ..BspOptions::default() }).expect("a small scene");
-        assert_eq!(reference(&bsp), exact);
+        assert_eq!(reference_method(&bsp), exact);
         let rows = compare(&bsp, &views, &methods, NonZeroUsize::MIN, |_| ()).expect("methods");
         let [by_bsp, by_boxes] = [0, 1].map(|k| worst(&rows[k]));
         assert!(by_boxes < 1e-12 && (by_bsp > 0.1) == (epsilon > 0.0), "{epsilon}: {by_bsp} {by_boxes}");

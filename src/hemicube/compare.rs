@@ -148,7 +148,7 @@ pub enum CompareError {
 
 /// The method of which the form factors are taken for exact where others are compared with them: the contour image in the order of the
 /// 3D BSP, or that by a hierarchy of boxes if the 3D BSP was built with an epsilon above 0 and may see a wrong order.
-pub fn reference(bsp: &SceneBsp) -> Method {
+pub fn reference_method(bsp: &SceneBsp) -> Method {
     if bsp.epsilon() > 0.0 { Method::ContourByBoxes } else { Method::Contour }
 }
 
@@ -156,7 +156,7 @@ pub fn reference(bsp: &SceneBsp) -> Method {
 const BLOCK: usize = 20;
 
 /// Takes all views with every method, `rounds` times each on one thread, and compares form factors with those of a contour image, which are exact up to
-/// the rounding of their sums: in the order of `bsp`, or by a hierarchy of boxes where that has an epsilon ([`reference`]).
+/// the rounding of their sums: in the order of `bsp`, or by a hierarchy of boxes where that has an epsilon ([`reference_method`]).
 ///
 /// Some views are taken by all methods in turn, then by all of them again, so that none has just been taken by a method when it takes it
 /// again, and a busy moment of the machine does not meet all times of one method; what a method does once for the scene is timed
@@ -190,7 +190,7 @@ pub fn compare(
     rounds: NonZeroUsize,
     mut done: impl FnMut(usize),
 ) -> Result<Vec<ComparisonRow>, CompareError> {
-    let exact_order: SceneOrder = match reference(bsp) {
+    let exact_order: SceneOrder = match reference_method(bsp) {
         Method::ContourByBoxes => SceneBvh::build(bsp.scene()).into(),
         _ => bsp.clone().into(),
     };

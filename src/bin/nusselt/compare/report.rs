@@ -3,7 +3,7 @@
 use crate::summary::{Lines, Timing, number};
 use nusselt::bsp::SceneBsp;
 use nusselt::contour::{Domain, Viewpoint};
-use nusselt::hemicube::{ComparisonRow, Deviations, Method, reference};
+use nusselt::hemicube::{ComparisonRow, Deviations, Method, reference_method};
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -109,7 +109,7 @@ impl Report {
             views: views.len(),
             on,
             rounds,
-            reference: reference(bsp).name(),
+            reference: reference_method(bsp).name(),
             epsilon: bsp.epsilon(),
             timing,
             build_threads: rayon::current_num_threads(),
