@@ -45,6 +45,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     // Before anything is measured.
     let page = marks::Page::open(&docs.join("comparison.md"), "measured")?;
     let readme = other.is_none().then(|| marks::Page::open(&root.join("README.md"), "comparison")).transpose()?;
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;
     let start = Instant::now();
     let rooms = POLYGONS.map(measure).into_iter().collect::<Result<Vec<_>, _>>()?;
     figures::draw(&rooms, &docs.join("images"))?;
