@@ -35,11 +35,14 @@ mod ggx;
 mod halfway;
 mod lafortune;
 mod lambert;
+mod ltc;
+mod merl;
 mod mirror;
 mod oren_nayar;
 mod phong;
 mod reflect;
 mod reflected;
+mod sh;
 mod sum;
 mod ward;
 
@@ -54,10 +57,15 @@ pub use fresnel::Fresnel;
 pub use ggx::Ggx;
 pub use lafortune::Lafortune;
 pub use lambert::Lambert;
+pub use ltc::{GgxLtc, LtcFit, LtcTable};
+pub(crate) use merl::{BINS as MERL_BINS, COUNT as MERL_COUNT, bin as merl_bin};
+pub use merl::{Merl, Unmeasured};
 pub use mirror::Mirror;
 pub use oren_nayar::OrenNayar;
 pub use phong::Phong;
 pub use reflected::{ReflectError, emitted, reflected_radiance};
+pub(crate) use sh::is_usable;
+pub use sh::{ShBrdf, ShProjection, ShSymmetry};
 pub use sum::Sum;
 pub use ward::Ward;
 
@@ -75,7 +83,7 @@ pub struct RgbEstimate {
 
 /// A bidirectional reflectance distribution function.
 pub trait Brdf: Send + Sync {
-    /// The ratio of the radiance reflected towards `outgoing` to the irradiance from `incoming`, in sr^-1: never negative, finite for
+    /// The ratio of the radiance reflected towards `outgoing` to the irradiance from `incoming`, in sr^-1: never negative but for a [`ShBrdf`], finite for
     /// directions above the surface, and 0 below it. Without the parts of [`Form::Dirac`], which have no finite value.
     fn eval(&self, incoming: DVec3, outgoing: DVec3) -> DVec3;
 

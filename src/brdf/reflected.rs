@@ -46,7 +46,7 @@ pub fn emitted(cell: Cell<'_>) -> DVec3 {
 /// towards the viewer, with any length. `emission` tells the radiance of a cell: [`emitted`], or anything else that
 /// is the same all over a cell, such as radiosities or a sky.
 ///
-/// Lobes are integrated in closed form and everything else by cubature to the tolerance of `options`, for each part of a sum; mirrors
+/// Lobes and series of spherical harmonics are integrated in closed form and everything else by cubature to the tolerance of `options`, for each part of a sum; mirrors
 /// show the cell that holds the mirror direction, exactly as rounded. If that lies between cells the value is that of one of
 /// them, and the error how much others differ. The cost is O(corners of cells that emit), times the exponent of a lobe that reaches them, or a
 /// few hundred evaluations of the BRDF a cell.
