@@ -1,8 +1,9 @@
 //! Integrals of BRDF times cosine times radiance over convex spherical polygons, each form in its own way.
 
+use super::seen::Seen;
 use super::{Form, Lobe, RgbEstimate};
 use crate::integral::{
-    Cubature, CubatureOptions, Peak, Smoothness, clip, double_axis_moment, form_factor, perimeter, unit_outline,
+    Cubature, CubatureOptions, Peak, Smoothness, Weight, clip, double_axis_moment, form_factor, perimeter, unit_outline,
 };
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -30,11 +31,16 @@ pub(super) struct Lit {
     radiance: DVec3,
 }
 
+/// What of a polygon is above the horizon; `None` if nothing is.
+pub(super) fn above_horizon(boundary: &[DVec3]) -> Option<Vec<DVec3>> {
+    let outline = clip(&unit_outline(boundary), DVec3::Z);
+    (outline.len() > 2).then_some(outline)
+}
+
 impl Lit {
     /// What of a polygon is above the horizon; `None` if nothing is.
     pub(super) fn new(boundary: &[DVec3], radiance: DVec3) -> Option<Self> {
-        let outline = clip(&unit_outline(boundary), DVec3::Z);
-        (outline.len() > 2).then_some(Self { outline, radiance })
+        Some(Self { outline: above_horizon(boundary)?, radiance })
     }
 
     /// No direction of it has a larger cosine to an axis.
@@ -84,9 +90,58 @@ pub(super) fn reflect(
             sum
         }
         Form::General { peaks, creases, smoothness } => {
-            by_cubature(eval, (&peaks, &creases, smoothness), surroundings.lit, options)
+            by_cubature(eval, (&peaks, &creases, smoothness), constant(surroundings.lit), options)
         }
     }
+}
+
+/// The same from what varies. A mirror looks it up with the rest.
+pub(super) fn reflect_varying(
+    form: Form<'_>,
+    eval: &dyn Fn(DVec3) -> DVec3,
+    outgoing: DVec3,
+    seen: &Seen,
+    options: CubatureOptions,
+) -> RgbEstimate {
+    match form {
+        Form::Dirac { .. } => RgbEstimate::default(),
+        Form::Sum(parts) => {
+            let mut sum = RgbEstimate::default();
+            for part in parts {
+                let eval = |incoming| part.eval(incoming, outgoing);
+                sum += reflect_varying(part.form(outgoing), &eval, outgoing, seen, options);
+            }
+            sum
+        }
+        Form::Lobes(lobes) => {
+            let peaks: Vec<Peak> = lobes.iter().filter(|lobe| lobe.power > 0).map(Lobe::peak).collect();
+            let creases: Vec<DVec3> = peaks.iter().map(|peak| peak.axis).collect();
+            varying_by_cubature(seen, eval, (&peaks, &creases, Smoothness::Smooth), options)
+        }
+        Form::General { peaks, creases, smoothness } => {
+            varying_by_cubature(seen, eval, (&peaks, &creases, smoothness), options)
+        }
+    }
+}
+
+fn varying_by_cubature(
+    seen: &Seen,
+    eval: &dyn Fn(DVec3) -> DVec3,
+    (peaks, creases, smoothness): Shape<'_>,
+    options: CubatureOptions,
+) -> RgbEstimate {
+    let mut sum = RgbEstimate::default();
+    if !seen.linear.is_empty() {
+        let parts = seen.linear.iter().map(|(outline, linear)| (&outline[..], Weight::Linear(*linear)));
+        sum += by_cubature(eval, (peaks, creases, smoothness), parts, options);
+    }
+    for (sky, outlines) in &seen.skies {
+        let peaks: Vec<Peak> = peaks.iter().copied().chain(sky.peak()).collect();
+        let product = |incoming| eval(incoming) * sky.radiance(incoming);
+        let parts = outlines.iter().map(|outline| (&outline[..], Weight::Constant(DVec3::ONE)));
+        sum += by_cubature(&product, (&peaks, creases, smoothness), parts, options);
+    }
+    sum
 }
 
 /// By moments; by cubature where the bound on their error, which is absolute, is more than what is allowed and than cubature's.
@@ -114,28 +169,36 @@ fn of_lobe(lobe: &Lobe, lit: &[Lit], options: CubatureOptions) -> RgbEstimate {
     if lobe.power == 0 || sum.error.max_element() <= allowed {
         return sum;
     }
-    let other =
-        by_cubature(&|incoming| lobe.eval(incoming), (&[lobe.peak()], &[lobe.axis], Smoothness::Smooth), lit, options);
+    let shape: Shape<'_> = (&[lobe.peak()], &[lobe.axis], Smoothness::Smooth);
+    let other = by_cubature(&|incoming| lobe.eval(incoming), shape, constant(lit), options);
     if other.error.max_element() < sum.error.max_element() { other } else { sum }
 }
 
 /// A moment below that is not computed: less than the error of one that is.
 const NOTHING: f64 = 1e-18;
 
-fn by_cubature(
+/// Where a function is large, normals of great circles at which it has kinks, and whether it has others.
+type Shape<'a> = (&'a [Peak], &'a [DVec3], Smoothness);
+
+/// Polygons with what they are weighted by.
+fn constant(lit: &[Lit]) -> impl Iterator<Item = (&[DVec3], Weight)> {
+    lit.iter().map(|part| (&part.outline[..], Weight::Constant(part.radiance)))
+}
+
+fn by_cubature<'a>(
     eval: &dyn Fn(DVec3) -> DVec3,
-    (peaks, creases, smoothness): (&[Peak], &[DVec3], Smoothness),
-    lit: &[Lit],
+    (peaks, creases, smoothness): Shape<'_>,
+    parts: impl Iterator<Item = (&'a [DVec3], Weight)>,
     options: CubatureOptions,
 ) -> RgbEstimate {
     let mut cubature = Cubature::new(|incoming: DVec3| eval(incoming) * incoming.z.max(0.0), peaks, smoothness);
-    for part in lit {
-        let mut outlines = vec![part.outline.clone()];
+    for (outline, weight) in parts {
+        let mut outlines = vec![outline.to_vec()];
         for &crease in creases {
             outlines = outlines.iter().flat_map(|outline| [clip(outline, crease), clip(outline, -crease)]).collect();
         }
         for outline in &outlines {
-            cubature.add(outline, part.radiance);
+            cubature.add_weighted(outline, weight);
         }
     }
     let integral = cubature.run(options);

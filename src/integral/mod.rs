@@ -25,6 +25,7 @@ mod tests;
 
 pub(crate) use clip::{clip, perimeter, unit_outline};
 pub use cubature::{Cubature, CubatureOptions, Integral, Peak, Smoothness, integrate};
+pub(crate) use cubature::{Linear, Weight};
 pub use form_factor::{form_factor, form_factor_of_units};
 pub use moments::{Estimate, axial_moment, double_axis_moment};
 pub(crate) use receiver::Receiver;

@@ -1,6 +1,7 @@
 //! The command line program `nusselt`.
 
 mod args;
+mod brdf;
 mod compare;
 mod contour;
 mod failure;
@@ -12,6 +13,7 @@ mod place;
 mod point_factors;
 mod progress;
 mod proof;
+mod reflect;
 mod repairs;
 mod scene;
 mod summary;
@@ -39,6 +41,7 @@ enum Command {
     PointFactors(point_factors::PointFactorsOf),
     #[command(name = "form-factors")]
     FormFactors(form_factors::FormFactors),
+    Reflect(reflect::Reflect),
     Compare(compare::Compare),
     Verify(verify::Verify),
     Scene(scene::Scene),
@@ -51,6 +54,7 @@ impl Command {
             Self::Contour(command) => command.run(common),
             Self::PointFactors(command) => command.run(common),
             Self::FormFactors(command) => command.run(common),
+            Self::Reflect(command) => command.run(common),
             Self::Compare(command) => command.run(common),
             Self::Verify(command) => command.run(common),
             Self::Scene(command) => command.run(common),
