@@ -66,6 +66,7 @@ pub use metallic_roughness::MetallicRoughness;
 pub use mirror::Mirror;
 pub use oren_nayar::OrenNayar;
 pub use phong::Phong;
+pub(crate) use reflected::Place;
 pub use reflected::{ReflectError, albedo_towards, reflected_radiance};
 pub use sky::{Sky, SkyError};
 pub use sum::Sum;

@@ -3,7 +3,7 @@
 use super::seen::Seen;
 use super::{Form, Lobe, RgbEstimate};
 use crate::integral::{
-    Cubature, CubatureOptions, Peak, Smoothness, Weight, clip, double_axis_moment, form_factor, perimeter, unit_outline,
+    Cubature, CubatureOptions, Peak, Receiver, Smoothness, Weight, clip, double_axis_moment, unit_outline,
 };
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -33,6 +33,12 @@ pub(super) struct Lit {
 
 /// What of a polygon is above the horizon; `None` if nothing is.
 pub(super) fn above_horizon(boundary: &[DVec3]) -> Option<Vec<DVec3>> {
+    // Most are outlines as they are: unit vectors but for rounding.
+    let next = boundary.iter().cycle().skip(1);
+    let is_outline = boundary.iter().zip(next).all(|(a, b)| a.z > 0.0 && a != b && a.dot(*b) >= 0.0);
+    if is_outline && boundary.len() > 2 {
+        return Some(boundary.to_vec());
+    }
     let outline = clip(&unit_outline(boundary), DVec3::Z);
     (outline.len() > 2).then_some(outline)
 }
@@ -147,12 +153,16 @@ fn varying_by_cubature(
 /// By moments; by cubature where the bound on their error, which is absolute, is more than what is allowed and than cubature's.
 fn of_lobe(lobe: &Lobe, lit: &[Lit], options: CubatureOptions) -> RgbEstimate {
     let mut sum = RgbEstimate::default();
+    let receiver = Receiver::new(DVec3::Z);
+    let mut corners = Vec::new();
     for part in lit {
         let (value, error) = if lobe.power == 0 {
-            let factor = form_factor(&part.outline, DVec3::Z);
-            // As it states, and for corners rounded to units of f64.
-            let rim = perimeter(&part.outline);
-            (PI * factor, 2e-16 * PI * (factor + rim * rim.min(PI)) + 2.0 * f64::EPSILON * rim)
+            let factor = receiver.factor_of(part.outline.iter().copied(), &mut corners);
+            // No arc is longer than 90 degrees, nor 1.12 times its chord.
+            let rim: f64 = corners.windows(2).map(|ends| 1.12 * ends[0].distance(ends[1])).sum();
+            // As both ways to compute it are off at most (docs/integrals.md), and for corners rounded to units of f64.
+            let error = 4e-16 * PI * (factor + rim * rim.min(PI)) + 3.0 * f64::EPSILON * rim;
+            (PI * factor, error)
         } else {
             // Of the lobe's tail a bound is enough.
             let bound = TAU * part.largest_cosine(lobe.axis).max(0.0).powi(i32::from(lobe.power));

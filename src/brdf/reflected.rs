@@ -48,14 +48,14 @@ pub enum ReflectError {
 }
 
 /// A surface that reflects towards a viewer.
-pub(super) struct Place {
+pub(crate) struct Place {
     frame: Frame,
     /// Towards the viewer, in the surface's frame.
-    pub(super) outgoing: DVec3,
+    pub(crate) outgoing: DVec3,
 }
 
 impl Place {
-    pub(super) fn new(image: &ContourImage, tangent: Option<DVec3>, view: DVec3) -> Result<Self, ReflectError> {
+    pub(crate) fn new(image: &ContourImage, tangent: Option<DVec3>, view: DVec3) -> Result<Self, ReflectError> {
         let normal = image.normal().ok_or(ReflectError::NoNormal)?;
         let frame = Frame::new(normal, tangent).ok_or(ReflectError::BadTangent(tangent.unwrap_or_default()))?;
         let outgoing = (view / view.abs().max_element()).try_normalize().map(|unit| frame.to_local(unit));
@@ -64,8 +64,13 @@ impl Place {
     }
 
     /// From the scene's directions to the surface's.
-    pub(super) fn to_local(&self, direction: DVec3) -> DVec3 {
+    pub(crate) fn to_local(&self, direction: DVec3) -> DVec3 {
         self.frame.to_local(direction)
+    }
+
+    /// And back.
+    pub(crate) fn to_scene(&self, direction: DVec3) -> DVec3 {
+        self.frame.to_scene(direction)
     }
 }
 
@@ -94,12 +99,9 @@ pub fn reflected_radiance<'e, E: Into<Emission<'e>>>(
 ) -> Result<RgbEstimate, ReflectError> {
     let place = Place::new(image, tangent, view)?;
     let outgoing = place.outgoing;
-    let mut seen = Seen::default();
-    for cell in image.cells() {
-        seen.add(cell, &emission(cell).into(), place.frame)?;
-    }
+    let seen = Seen::new(image, place.frame, |cell| emission(cell).into())?;
     let from = |direction: DVec3| {
-        let direction = place.frame.to_scene(direction);
+        let direction = place.to_scene(direction);
         let regions = image.locate(direction).regions();
         let radiances = regions.iter().map(|&region| match region {
             Region::Cell(cell) => {

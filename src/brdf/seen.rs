@@ -4,7 +4,7 @@ use super::emission::Emission;
 use super::frame::Frame;
 use super::reflect::{Lit, above_horizon};
 use super::{ReflectError, Sky};
-use crate::contour::Cell;
+use crate::contour::{Cell, ContourImage, Merged};
 use crate::integral::{Linear, clip};
 use glam::DVec3;
 
@@ -20,19 +20,49 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// Adds what a cell shows.
-    pub(super) fn add(&mut self, cell: Cell<'_>, emission: &Emission<'_>, frame: Frame) -> Result<(), ReflectError> {
-        let boundary = || cell.boundary().map(|corner| frame.to_local(corner)).collect::<Vec<_>>();
-        match emission {
-            Emission::Constant(radiance) => {
-                check(cell, *radiance)?;
-                if radiance.max_element() > 0.0 {
-                    self.lit.extend(Lit::new(&boundary(), *radiance));
+    /// What an image shows. Cells that show the same are merged where the contour tree tells that their union is convex.
+    pub(super) fn new<'e>(
+        image: &ContourImage,
+        frame: Frame,
+        emission: impl Fn(Cell<'_>) -> Emission<'e>,
+    ) -> Result<Self, ReflectError> {
+        let label = |cell: Cell<'_>| {
+            let emission = emission(cell);
+            // Radiances at vertices are those of one piece.
+            let piece = match &emission {
+                Emission::Constant(radiance) => {
+                    check(cell, *radiance)?;
+                    if *radiance == DVec3::ZERO {
+                        return Ok(None);
+                    }
+                    None
                 }
-            }
+                Emission::Vertices(_) => cell.piece(),
+                Emission::Sky(_) => None,
+            };
+            Ok(Some((piece, emission)))
+        };
+        let mut seen = Self::default();
+        for Merged { label: (_, emission), cell, mut boundary } in image.merged(label)? {
+            boundary.iter_mut().for_each(|corner| *corner = frame.to_local(*corner));
+            seen.add(image.cell(cell), &boundary, &emission, frame)?;
+        }
+        Ok(seen)
+    }
+
+    /// Adds what cells show, one of which is given.
+    fn add(
+        &mut self,
+        cell: Cell<'_>,
+        boundary: &[DVec3],
+        emission: &Emission<'_>,
+        frame: Frame,
+    ) -> Result<(), ReflectError> {
+        match emission {
+            Emission::Constant(radiance) => self.lit.extend(Lit::new(boundary, *radiance)),
             Emission::Vertices(radiances) => {
                 let triangles = fan(cell, radiances)?;
-                let Some(outline) = above_horizon(&boundary()) else { return Ok(()) };
+                let Some(outline) = above_horizon(boundary) else { return Ok(()) };
                 for triangle in triangles.iter().filter(|triangle| triangle.is_lit()) {
                     let cuts = triangle.cuts.iter().flatten().map(|&cut| frame.to_local(cut));
                     let outline = cuts.fold(outline.clone(), |outline, cut| clip(&outline, cut));
@@ -41,19 +71,21 @@ impl Seen {
                     }
                 }
             }
-            Emission::Sky(sky) => match sky.as_constant() {
-                Some(radiance) => self.add(cell, &radiance.into(), frame)?,
-                None => {
-                    let sky = sky.turned(|v| frame.to_local(v));
-                    let outline = above_horizon(&boundary());
-                    let outline = outline.map(|outline| sky.horizon().map_or(outline.clone(), |up| clip(&outline, up)));
-                    let Some(outline) = outline.filter(|outline| outline.len() > 2) else { return Ok(()) };
+            Emission::Sky(sky) => {
+                if let Some(radiance) = sky.as_constant() {
+                    self.lit.extend(Lit::new(boundary, radiance));
+                    return Ok(());
+                }
+                let sky = sky.turned(|v| frame.to_local(v));
+                let above = above_horizon(boundary).unwrap_or_default();
+                let outline = sky.horizon().map_or(above.clone(), |up| clip(&above, up));
+                if outline.len() > 2 {
                     match self.skies.iter_mut().find(|(known, _)| *known == sky) {
                         Some((_, outlines)) => outlines.push(outline),
                         None => self.skies.push((sky, vec![outline])),
                     }
                 }
-            },
+            }
         }
         Ok(())
     }

@@ -11,6 +11,7 @@ mod clip;
 mod cubature;
 mod flux;
 mod form_factor;
+mod gradient;
 mod moments;
 mod precise;
 mod receiver;
@@ -23,10 +24,11 @@ mod zonal;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use clip::{clip, perimeter, unit_outline};
+pub(crate) use clip::{clip, unit_outline};
 pub use cubature::{Cubature, CubatureOptions, Integral, Peak, Smoothness, integrate};
 pub(crate) use cubature::{Linear, Weight};
 pub use form_factor::{form_factor, form_factor_of_units};
+pub use gradient::{GradientError, IrradianceGradient};
 pub use moments::{Estimate, axial_moment, double_axis_moment};
 pub(crate) use receiver::Receiver;
 pub use solid_angle::{solid_angle, solid_angle_of_units};

@@ -55,7 +55,7 @@ pub use error::{Fault, Faults, Place, ReadError};
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
-pub use svg::{SvgOptions, write_svg};
+pub use svg::{BrdfPicture, SvgOptions, write_brdf_svg, write_svg};
 pub use visible_obj::{fragment_groups, visible_groups};
 
 use crate::scene::{Repair, Scene};

@@ -1,7 +1,10 @@
 //! Contour images as SVG: what is seen, in flat colours, with thin outlines.
 
+mod brdf;
 mod lines;
 mod paint;
+
+pub use brdf::{BrdfPicture, write_brdf_svg};
 
 use crate::contour::{CellId, ContourImage, Projection, Projector};
 use crate::scene::PolygonId;

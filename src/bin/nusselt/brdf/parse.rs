@@ -122,7 +122,8 @@ impl Fields<'_> {
     fn numbers<const N: usize>(&self, at: usize) -> Result<[f64; N], String> {
         let list = self.list(at, N)?;
         let text = self.fields[at];
-        list.try_into().map_err(|_| format!("{}: it takes {N} numbers with commas between them, not {text:?}", self.name))
+        list.try_into()
+            .map_err(|_| format!("{}: it takes {N} numbers with commas between them, not {text:?}", self.name))
     }
 
     /// Two numbers, or one for both.
