@@ -8,7 +8,7 @@ use nusselt::brdf::emitted_by_both_sides;
 use nusselt::contour::{ContourImage, Domain, SceneOrder, Viewpoint, VisibleRegion};
 use nusselt::integral::{GradientError, IrradianceGradient};
 use nusselt::samples::{Kind, generate};
-use nusselt::scene::{Material, PolygonId, Scene, Side};
+use nusselt::scene::{Material, PolygonId, Scene};
 use std::f64::consts::PI;
 
 fn scene(faces: &[Vec<DVec3>], radiance: impl Fn(usize) -> f64) -> Scene {
@@ -122,7 +122,8 @@ fn rooms_have_gradients_along_their_floors() {
     let (low, high) = scene.bounds().unwrap();
     let at = |x: f64, y: f64| {
         let near = DVec3::new(low.x + (high.x - low.x) * x, low.y + (high.y - low.y) * y, low.z);
-        let floor = Viewpoint::on_surface(&scene, PolygonId(0), Side::Front, near).unwrap();
+        let (piece, side) = Viewpoint::surface_at(&scene, near, DVec3::Z).expect("a tile of the floor");
+        let floor = Viewpoint::on_piece(&scene, piece, side, near).unwrap();
         order.view(&floor, &Domain::Above).unwrap()
     };
     let lit = |image: &ContourImage| {
@@ -143,6 +144,7 @@ fn rooms_have_gradients_along_their_floors() {
             difference(|t| lit(&at(x, y + t)), h) / (high.y - low.y),
         ];
         let size = found.by_position[0].length();
+        assert!(size > 1e-3, "{found:?}");
         off.push((found.by_position[0].x - expected[0]).abs().max((found.by_position[0].y - expected[1]).abs()) / size);
     }
     off.sort_by(f64::total_cmp);

@@ -4,7 +4,7 @@ use super::emission::Emission;
 use super::frame::Frame;
 use super::reflect::{Lit, above_horizon};
 use super::{ReflectError, Sky};
-use crate::contour::{Cell, ContourImage, Merged};
+use crate::contour::{Cell, ContourImage};
 use crate::integral::{Linear, clip};
 use glam::DVec3;
 
@@ -20,37 +20,30 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// What an image shows. Cells that show the same are merged where the contour tree tells that their union is convex.
+    /// What an image shows.
     pub(super) fn new<'e>(
         image: &ContourImage,
         frame: Frame,
         emission: impl Fn(Cell<'_>) -> Emission<'e>,
     ) -> Result<Self, ReflectError> {
-        let label = |cell: Cell<'_>| {
-            let emission = emission(cell);
-            // Radiances at vertices are those of one piece.
-            let piece = match &emission {
-                Emission::Constant(radiance) => {
-                    check(cell, *radiance)?;
-                    if *radiance == DVec3::ZERO {
-                        return Ok(None);
-                    }
-                    None
-                }
-                Emission::Vertices(_) => cell.piece(),
-                Emission::Sky(_) => None,
-            };
-            Ok(Some((piece, emission)))
-        };
         let mut seen = Self::default();
-        for Merged { label: (_, emission), cell, mut boundary } in image.merged(label)? {
-            boundary.iter_mut().for_each(|corner| *corner = frame.to_local(*corner));
-            seen.add(image.cell(cell), &boundary, &emission, frame)?;
+        let mut boundary = Vec::new();
+        for cell in image.cells() {
+            let emission = emission(cell);
+            if let Emission::Constant(radiance) = emission {
+                check(cell, radiance)?;
+                if radiance == DVec3::ZERO {
+                    continue;
+                }
+            }
+            boundary.clear();
+            boundary.extend(cell.boundary().map(|corner| frame.to_local(corner)));
+            seen.add(cell, &boundary, &emission, frame)?;
         }
         Ok(seen)
     }
 
-    /// Adds what cells show, one of which is given.
+    /// Adds what a cell shows, with its boundary in the surface's frame.
     fn add(
         &mut self,
         cell: Cell<'_>,

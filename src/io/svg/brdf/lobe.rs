@@ -71,7 +71,7 @@ pub(super) fn write(seen: &Seen<'_>, out: &mut impl Write) -> io::Result<()> {
     if most > 0.0 {
         let step = round_step(most, 1.5);
         let length = step / most * RADIUS;
-        let [x, y] = [40.0, SIZE.y - 40.0];
+        let [x, y] = [24.0, 58.0];
         writeln!(out, r#"<path class="axis" d="M{x},{y}v-5v10v-5h{}v-5v10"/>"#, Number(length))?;
         word(
             DVec2::new(x + length + 12.0, y + 5.0),
