@@ -282,7 +282,7 @@ fn a_mirror_at_an_edge_warns_of_the_error() {
     let value: Value = serde_json::from_str(&stdout).expect("JSON");
     // The direction is rounded: within it, beyond it or on it.
     let [radiance, error] = ["radiance", "error"].map(|key| rgb(&value, key)[0]);
-    assert!((radiance == 0.0 || radiance == 3.0) && (error == 0.0 || error == 3.0), "{value}");
+    assert!([0.0, 3.0].contains(&radiance) && [0.0, 3.0].contains(&error), "{value}");
     assert_eq!(stderr.contains("larger than --tolerance"), error > 0.0, "{stderr}");
 }
 
@@ -299,7 +299,7 @@ fn check_xml(text: &str) {
         );
         let end = start + rest[start..].find('>').expect("a tag that ends");
         let tag = &rest[start + 1..end];
-        assert!(tag.matches('"').count() % 2 == 0 && !tag.contains('<'), "{tag}");
+        assert!(tag.matches('"').count().is_multiple_of(2) && !tag.contains('<'), "{tag}");
         if let Some(name) = tag.strip_prefix('/') {
             assert_eq!(open.pop(), Some(name));
         } else if !tag.ends_with('/') {

@@ -18,7 +18,7 @@ mod lines;
 
 use super::flux::double_flux;
 use super::unit_outline;
-use crate::contour::{ContourImage, RegionSide, VisibleRegion};
+use crate::contour::{ContourImage, RegionLoop, RegionSide, VisibleRegion};
 use crate::scene::{PolygonId, VertexId};
 use glam::DVec3;
 use lines::Lines;
@@ -114,7 +114,7 @@ impl ContourImage {
                 region_flux += 0.5 * double_flux(&unit_outline(&boundary));
             }
             let mut region_motion = DVec3::ZERO;
-            for side in region.loops().iter().flat_map(|boundary| boundary.sides()) {
+            for side in region.loops().iter().flat_map(RegionLoop::sides) {
                 if let Some(line) = lines.behind(side, region.polygon())? {
                     region_motion += line.growth(side, normal);
                 }

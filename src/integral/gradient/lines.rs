@@ -4,7 +4,7 @@ use super::{GradientError, Line};
 use crate::bsp::LineId;
 use crate::contour::{ContourImage, Horizon, RegionSide, Splitter};
 use crate::exact::{self, CircleRelation, Kernel, Plane, Sign};
-use crate::scene::{EdgeId, PolygonId, Shape, VertexId};
+use crate::scene::{EdgeId, PieceRef, PolygonId, Shape, VertexId};
 use glam::DVec3;
 use std::collections::HashSet;
 use std::f64::consts::TAU;
@@ -66,7 +66,7 @@ impl<'a> Lines<'a> {
         for polygon in scene.polygons() {
             let pairs = polygon.rings().iter().flat_map(|ring| ring.iter().zip(ring.iter().cycle().skip(1)));
             let ends: HashSet<[VertexId; 2]> = pairs.map(|(&a, &b)| [a.min(b), a.max(b)]).collect();
-            for &edge in polygon.pieces().flat_map(|piece| piece.edges()) {
+            for &edge in polygon.pieces().flat_map(PieceRef::edges) {
                 let is_fold = polygon.shape() == Shape::NonPlanar;
                 is_end[edge.index()] |= is_fold || ends.contains(&scene.edges()[edge.index()]);
             }

@@ -3,6 +3,7 @@
 use super::super::{Number, PathData};
 use super::{Seen, arrow, begin, label, round_step, short, word};
 use glam::{DVec2, DVec3};
+use std::f64::consts::FRAC_PI_2;
 use std::io::{self, Write};
 
 const SIZE: DVec2 = DVec2::new(820.0, 500.0);
@@ -59,7 +60,7 @@ fn angles(seen: &Seen<'_>) -> Vec<f64> {
         let steps = (0..60).map(|k| 1e-5 * 1.15_f64.powi(k));
         angles.extend(steps.flat_map(|step| [peak - step, peak + step]));
     }
-    angles.retain(|angle| angle.abs() < 1.5707);
+    angles.retain(|angle| angle.abs() < 0.9999 * FRAC_PI_2);
     angles.sort_by(f64::total_cmp);
     angles
 }
