@@ -4,7 +4,8 @@
 
 use glam::DVec3;
 use nusselt::brdf::{
-    AshikhminShirley, Blinn, Brdf, Fresnel, Ggx, Lambert, Mirror, OrenNayar, Phong, Ward, emitted, reflected_radiance,
+    AshikhminShirley, Blinn, Brdf, Fresnel, Ggx, GgxLtc, Lambert, Merl, Mirror, OrenNayar, Phong, ShBrdf, ShSymmetry,
+    Ward, emitted, reflected_radiance,
 };
 use nusselt::contour::{Cell, ContourImage, Domain, SceneOrder, Viewpoint};
 use nusselt::integral::CubatureOptions;
@@ -32,9 +33,11 @@ fn main() {
     for (name, brdf) in models() {
         measure(name, &*brdf, &images, emitted);
     }
-    let some = || models().into_iter().filter(|(name, _)| ["Lambert", "Phong 10", "GGX 0.1"].contains(name));
     println!("every cell emits a radiance of its own:");
-    for (name, brdf) in some() {
+    for (name, brdf) in models()
+        .into_iter()
+        .filter(|(name, _)| ["Lambert", "Phong 10", "GGX 0.1", "GGX 0.1 by LTC", "SH 8"].contains(name))
+    {
         measure(name, &*brdf, &images, |cell| DVec3::splat(1.0 + f64::from(cell.id().0) * 1e-3));
     }
 }
@@ -71,6 +74,10 @@ fn models() -> Vec<(&'static str, Box<dyn Brdf>)> {
     let rho = DVec3::new(0.9, 0.5, 0.1);
     let fresnel = Fresnel::schlick(rho).expect("a reflectance");
     let good = "parameters in range";
+    let rough = Ggx::new(fresnel, 0.5, 0.5).expect(good);
+    let harmonics =
+        |band| Box::new(ShBrdf::project(&rough, ShSymmetry::Isotropic, band).expect("a smooth function").brdf);
+    let table = |model: &dyn Brdf| Box::new(Merl::tabulate(model).expect("a function"));
     vec![
         ("Lambert", Box::new(Lambert::new(rho).expect(good))),
         ("Phong 10", Box::new(Phong::new(rho, 10.0).expect(good))),
@@ -83,6 +90,14 @@ fn models() -> Vec<(&'static str, Box<dyn Brdf>)> {
         ("GGX 0.5", Box::new(Ggx::new(fresnel, 0.5, 0.5).expect(good))),
         ("GGX 0.1", Box::new(Ggx::new(fresnel, 0.1, 0.1).expect(good))),
         ("GGX 0.02", Box::new(Ggx::new(fresnel, 0.02, 0.02).expect(good))),
+        ("GGX 0.5 by LTC", Box::new(GgxLtc::new(rho, 0.5).expect(good))),
+        ("GGX 0.1 by LTC", Box::new(GgxLtc::new(rho, 0.1).expect(good))),
+        ("GGX 0.02 by LTC", Box::new(GgxLtc::new(rho, 0.02).expect(good))),
+        ("SH 8", harmonics(8)),
+        ("SH 16", harmonics(16)),
+        ("SH 32", harmonics(32)),
+        ("MERL of GGX 0.5", table(&rough)),
+        ("MERL of GGX 0.1", table(&Ggx::new(fresnel, 0.1, 0.1).expect(good))),
         ("mirror", Box::new(Mirror::new(Fresnel::ALL))),
     ]
 }

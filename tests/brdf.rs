@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 use nusselt::brdf::{
-    Brdf, Form, Fresnel, Ggx, Lambert, Mirror, OrenNayar, Phong, ReflectError, RgbEstimate, Sum, Ward, emitted,
-    reflected_radiance,
+    Brdf, Form, Fresnel, Ggx, GgxLtc, Lambert, Merl, Mirror, OrenNayar, Phong, ReflectError, RgbEstimate, ShBrdf,
+    ShSymmetry, Sum, Ward, emitted, reflected_radiance,
 };
 use nusselt::contour::{Cell, ContourImage, Domain, Location, SceneOrder, Viewpoint};
 use nusselt::integral::{CubatureOptions, Smoothness};
@@ -93,6 +93,35 @@ fn more_effort_gives_the_same_within_the_estimate() {
         }
     }
     assert!(lit > 20, "only {lit} see a lamp");
+}
+
+#[test]
+fn tables_reflect_what_they_were_made_of() {
+    let image = room();
+    let normal = image.normal().unwrap();
+    let x = normal.any_orthonormal_vector();
+    let y = normal.cross(x);
+    let rough = Ggx::new(Fresnel::schlick(RHO).unwrap(), 0.5, 0.5).unwrap();
+    let projected = ShBrdf::project(&rough, ShSymmetry::Isotropic, 16).unwrap();
+    let measured = Merl::tabulate(&rough).unwrap();
+    let fast = GgxLtc::new(RHO, 0.5).unwrap();
+    for view in views(&image).into_iter().take(3) {
+        let local = DVec3::new(x.dot(view), y.dot(view), normal.dot(view)).normalize();
+        let exact = reflected_radiance(&image, &rough, Some(x), view, emitted, options(1e-6)).unwrap();
+        let models: [(&str, &dyn Brdf, f64); 3] =
+            [("harmonics", &projected.brdf, 0.15), ("measured", &measured, 0.01), ("cosines", &fast, 0.25)];
+        for (name, brdf, off) in models {
+            let white = reflected_radiance(&image, brdf, Some(x), view, |_| DVec3::ONE, options(1e-4)).unwrap();
+            assert_within(white, brdf.albedo(local), 1e-12, name);
+            let lit = reflected_radiance(&image, brdf, Some(x), view, emitted, options(1e-4)).unwrap();
+            let difference = (lit.value - exact.value).abs();
+            // What a series, bins and one lobe for another leave; of the last the stated error is a bound.
+            assert!(difference.max_element() <= off * exact.value.max_element(), "{name}: {lit:?} {exact:?}");
+            if name == "cosines" {
+                assert_within(lit, exact, 0.0, name);
+            }
+        }
+    }
 }
 
 /// Whatever form a model has, by cubature.

@@ -1,6 +1,8 @@
 //! `nusselt reflect` as a user meets it.
 #![cfg(feature = "cli")]
 
+use nusselt::brdf::{Lambert, Merl};
+use nusselt::io::write_merl;
 use serde_json::Value;
 use std::f64::consts::PI;
 use std::fs;
@@ -271,6 +273,32 @@ fn specifications_that_make_no_sense_are_refused_with_what_is_expected() {
             .refused("reflect none.obj --eye 0,0,0 --normal 0,0,1 --view 0,0,1 --brdf mirror", 1)
             .contains("none.obj")
     );
+}
+
+#[test]
+fn tables_are_read_from_files() {
+    let folder = Folder::new("tables");
+    let matt = Lambert::new(glam::DVec3::new(0.5, 0.4, 0.3)).expect("a reflectance");
+    write_merl(&folder.0.join("matt.binary"), &Merl::tabulate(&matt).expect("a table")).expect("writable");
+    let expected = rgb(&folder.reflect("--view 0.2,-0.3,1 --brdf lambert:0.5,0.4,0.3"), "radiance");
+    let measured = folder.reflect("--view 0.2,-0.3,1 --brdf merl:matt.binary");
+    // The file has f64 values of a constant.
+    close(rgb(&measured, "radiance"), expected, 1e-4);
+    let ltc = folder.reflect("--view 0.2,-0.3,1 --brdf ltc:0.3:0.5 --sky overcast:1");
+    let ggx = folder.reflect("--view 0.2,-0.3,1 --brdf ggx:0.3:0.5 --sky overcast:1");
+    for k in 0..3 {
+        let off = (rgb(&ltc, "radiance")[k] - rgb(&ggx, "radiance")[k]).abs();
+        assert!(off <= rgb(&ltc, "error")[k] + rgb(&ggx, "error")[k], "{ltc} {ggx}");
+    }
+    let line = "reflect lamp.obj --eye 0,0,0 --normal 0,0,1 --view 0,0,1 --brdf";
+    for (spec, words) in
+        [("merl:none.binary", "none.binary"), ("sh:lamp.obj", "lamp.obj"), ("merl:lamp.obj", "lamp.obj")]
+    {
+        let message = folder.refused(&format!("{line} {spec}"), 1);
+        assert!(message.contains(words), "{spec}: {message}");
+    }
+    assert!(folder.refused(&format!("{line} merl"), 2).contains("it takes the form merl:FILE"));
+    assert!(folder.refused(&format!("{line} ltc:0.001"), 2).contains("ltc:"));
 }
 
 #[test]

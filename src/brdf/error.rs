@@ -21,6 +21,52 @@ pub enum BrdfError {
     /// A scale of a lobe is not finite.
     #[error("the scales of a lobe have to be finite numbers, not {0}")]
     BadScale(DVec3),
+    /// A series of spherical harmonics is too long.
+    #[error("spherical harmonics to band {band} are too many; take a band to {highest}")]
+    HighBand {
+        /// The band asked for.
+        band: u16,
+        /// The highest there may be.
+        highest: u16,
+    },
+    /// A table has the wrong size.
+    #[error("the table has {count} entries instead of {expected}")]
+    BadTable {
+        /// How many entries there are.
+        count: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// An entry of a table is not a finite number, or too large.
+    #[error("entry {index} of the table is {value}: it has to be of finite numbers up to 1e12")]
+    BadCoefficient {
+        /// Which, from 0.
+        index: usize,
+        /// What it is.
+        value: DVec3,
+    },
+    /// A BRDF with a mirror in it is to be put into a table.
+    #[error("a mirror is no function of the direction: leave it out of what is tabulated and add it again after")]
+    NoFunction,
+    /// A BRDF that is to be put into a table has a value that is not finite.
+    #[error("the BRDF is not finite for the direction {outgoing} towards the viewer")]
+    NotFinite {
+        /// Towards the viewer.
+        outgoing: DVec3,
+    },
+    /// A bin of measurements is negative where there are directions above the surface.
+    #[error(
+        "bin theta_h {}, theta_d {}, phi_d {} is {value}: measurements of directions above the surface may not be negative", bin[0], bin[1], bin[2]
+    )]
+    BadMeasurement {
+        /// Its numbers, from 0.
+        bin: [usize; 3],
+        /// What it is, in sr^-1.
+        value: DVec3,
+    },
+    /// A roughness is outside of the table of fits.
+    #[error("a roughness of linearly transformed cosines has to be from 0.0025 to 1, not {0}")]
+    NotFitted(f64),
     /// More light would be reflected than there is.
     #[error("the lobe may reflect up to {0} times the light it gets; take a smaller weight or scale")]
     NotConserving(f64),

@@ -1,8 +1,8 @@
 //! The forms in which a BRDF can be integrated.
 
 use super::Brdf;
-use crate::integral::{Peak, Smoothness};
-use glam::DVec3;
+use crate::integral::{Harmonics, Peak, Smoothness};
+use glam::{DMat3, DVec3};
 
 /// In what form a BRDF, for one direction towards the viewer, is a function of the direction towards the light.
 #[non_exhaustive]
@@ -15,6 +15,18 @@ pub enum Form<'a> {
         direction: DVec3,
         /// The part of its radiance that is reflected, 0 to 1.
         reflectance: DVec3,
+    },
+    /// A series of spherical harmonics without the cosine, integrated with it in closed form. To band 64 at most, else by cubature.
+    Harmonics(Harmonics),
+    /// A linearly transformed cosine in place of BRDF times cosine: with w = `inverse` u it is `weight` max(0, wz) det(inverse) / (pi |w|^4). A polygon is
+    /// transformed, and then a matt surface's form factor in closed form.
+    Transformed {
+        /// From directions to those in which it is a cosine; of positive determinant.
+        inverse: DMat3,
+        /// Its integral over all directions.
+        weight: DVec3,
+        /// The integral over all directions above the surface of the difference to what it stands for, in size.
+        distance: DVec3,
     },
     /// A sum of BRDFs, each in its own form.
     Sum(&'a [Box<dyn Brdf>]),

@@ -37,7 +37,9 @@ mod halfway;
 mod lafortune;
 mod lambert;
 mod lights;
+mod ltc;
 mod material;
+mod merl;
 mod metallic_roughness;
 mod mirror;
 mod oren_nayar;
@@ -45,6 +47,7 @@ mod phong;
 mod reflect;
 mod reflected;
 mod seen;
+mod sh;
 mod sky;
 mod sum;
 mod ward;
@@ -62,12 +65,17 @@ pub use ggx::Ggx;
 pub use lafortune::Lafortune;
 pub use lambert::Lambert;
 pub use lights::{Light, Lighting};
+pub use ltc::{GgxLtc, LtcFit, LtcTable};
+pub(crate) use merl::{BINS as MERL_BINS, COUNT as MERL_COUNT, bin as merl_bin};
+pub use merl::{Merl, Unmeasured};
 pub use metallic_roughness::MetallicRoughness;
 pub use mirror::Mirror;
 pub use oren_nayar::OrenNayar;
 pub use phong::Phong;
 pub(crate) use reflected::Place;
 pub use reflected::{ReflectError, albedo_towards, reflected_radiance};
+pub(crate) use sh::is_usable;
+pub use sh::{ShBrdf, ShProjection, ShSymmetry};
 pub use sky::{Sky, SkyError};
 pub use sum::Sum;
 pub use ward::Ward;
@@ -87,7 +95,7 @@ pub struct RgbEstimate {
 
 /// A bidirectional reflectance distribution function.
 pub trait Brdf: Send + Sync {
-    /// The ratio of the radiance reflected towards `outgoing` to the irradiance from `incoming`, in sr^-1: never negative, finite for
+    /// The ratio of the radiance reflected towards `outgoing` to the irradiance from `incoming`, in sr^-1: never negative but for a [`ShBrdf`], finite for
     /// directions above the surface, and 0 below it. Without the parts of [`Form::Dirac`], which have no finite value.
     fn eval(&self, incoming: DVec3, outgoing: DVec3) -> DVec3;
 

@@ -3,9 +3,10 @@
 use super::seen::Seen;
 use super::{Form, Lobe, RgbEstimate};
 use crate::integral::{
-    Cubature, CubatureOptions, Peak, Receiver, Smoothness, Weight, clip, double_axis_moment, unit_outline,
+    Cubature, CubatureOptions, Harmonics, Peak, Receiver, Smoothness, Weight, ZonalSum, clip, double_axis_moment,
+    form_factor, perimeter, unit_outline,
 };
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 use std::ops::{AddAssign, Mul};
 
@@ -86,6 +87,10 @@ pub(super) fn reflect(
             }
             sum
         }
+        Form::Harmonics(series) => of_harmonics(&series, surroundings.lit, options),
+        Form::Transformed { inverse, weight, distance } => {
+            of_transformed_cosine(inverse, weight, distance, surroundings.lit)
+        }
         Form::Dirac { direction, reflectance } => (surroundings.from)(direction) * reflectance,
         Form::Sum(parts) => {
             let mut sum = RgbEstimate::default();
@@ -123,6 +128,21 @@ pub(super) fn reflect_varying(
             let peaks: Vec<Peak> = lobes.iter().filter(|lobe| lobe.power > 0).map(Lobe::peak).collect();
             let creases: Vec<DVec3> = peaks.iter().map(|peak| peak.axis).collect();
             varying_by_cubature(seen, eval, (&peaks, &creases, Smoothness::Smooth), options)
+        }
+        Form::Harmonics(series) => {
+            let waves = Smoothness::Waves { band: series.band().saturating_add(1) };
+            varying_by_cubature(seen, eval, (&[], &[], waves), options)
+        }
+        Form::Transformed { inverse, distance, .. } => {
+            // The lobe is about what is turned to z, and not narrower than this.
+            let axis = inverse.inverse() * DVec3::Z;
+            let narrowest = 1.0 / (frobenius(inverse) * axis.length());
+            let peaks = [Peak { axis, width: narrowest.min(1.0) }];
+            let mut sum = varying_by_cubature(seen, eval, (&peaks, &[], Smoothness::Smooth), options);
+            let most = seen.linear.iter().map(|(_, linear)| linear.most());
+            let most = most.chain(seen.skies.iter().map(|(sky, _)| sky.most()));
+            sum.error += distance * most.fold(DVec3::ZERO, DVec3::max);
+            sum
         }
         Form::General { peaks, creases, smoothness } => {
             varying_by_cubature(seen, eval, (&peaks, &creases, smoothness), options)
@@ -186,6 +206,52 @@ fn of_lobe(lobe: &Lobe, lit: &[Lit], options: CubatureOptions) -> RgbEstimate {
 
 /// A moment below that is not computed: less than the error of one that is.
 const NOTHING: f64 = 1e-18;
+
+/// By zonal integrals; by cubature where the bound on their error is more than what is allowed and than cubature's.
+fn of_harmonics(series: &Harmonics, lit: &[Lit], options: CubatureOptions) -> RgbEstimate {
+    let mut closed = None;
+    if let Some(zonal) = ZonalSum::new(&series.times_z()) {
+        let mut sum = RgbEstimate::default();
+        for part in lit {
+            let integral = zonal.integral(&part.outline);
+            sum += RgbEstimate { value: integral.value, error: integral.error } * part.radiance;
+        }
+        let allowed = options.absolute.max(options.relative * sum.value.abs().max_element());
+        if sum.error.max_element() <= allowed {
+            return sum;
+        }
+        closed = Some(sum);
+    }
+    let waves = Smoothness::Waves { band: series.band().saturating_add(1) };
+    let other = by_cubature(&|incoming| series.eval(incoming), (&[], &[], waves), constant(lit), options);
+    closed.filter(|closed| closed.error.max_element() <= other.error.max_element()).unwrap_or(other)
+}
+
+/// By the form factors of transformed polygons (Heitz, Dupuy, Hill and Neubelt, "Real-time polygonal-light shading with linearly transformed cosines", 2016).
+///
+/// Polygons do not overlap, so the distance to what the cosine stands for counts once, with the brightest of them.
+fn of_transformed_cosine(inverse: DMat3, weight: DVec3, distance: DVec3, lit: &[Lit]) -> RgbEstimate {
+    // By how much a turn of a direction, such as a corner's rounding, may grow.
+    let growth = frobenius(inverse) * frobenius(inverse.inverse());
+    let mut sum = RgbEstimate::default();
+    let mut brightest = DVec3::ZERO;
+    for part in lit {
+        let moved: Vec<DVec3> = part.outline.iter().map(|&corner| inverse * corner).collect();
+        let outline = clip(&unit_outline(&moved), DVec3::Z);
+        let rounding = f64::EPSILON * (1.0 + (4.0 + growth) * perimeter(&outline));
+        let factor =
+            RgbEstimate { value: DVec3::splat(form_factor(&outline, DVec3::Z)), error: DVec3::splat(rounding) };
+        sum += factor * (weight * part.radiance);
+        brightest = brightest.max(part.radiance);
+    }
+    sum.error += distance * brightest;
+    sum
+}
+
+/// A bound on how much a matrix stretches.
+fn frobenius(m: DMat3) -> f64 {
+    m.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt()
+}
 
 /// Where a function is large, normals of great circles at which it has kinks, and whether it has others.
 type Shape<'a> = (&'a [Peak], &'a [DVec3], Smoothness);

@@ -81,7 +81,7 @@ impl Place {
 /// towards the viewer, with any length. `emission` tells the radiance of a cell, as an [`Emission`] or, if it is the same all over, as a colour:
 /// [`emitted`](super::emitted()), radiosities, a sky. [`Lighting`](super::Lighting) puts the usual ones together.
 ///
-/// Lobes are integrated in closed form and everything else by cubature to the tolerance of `options`, for each part of a sum, and
+/// Lobes and series of spherical harmonics are integrated in closed form and everything else by cubature to the tolerance of `options`, for each part of a sum, and
 /// apart for what is the same all over a cell, linear radiances, and the sky; mirrors
 /// show the cell that holds the mirror direction, exactly as rounded. If that lies between cells the value is that of one of
 /// them, and the error how much others differ. The cost is O(corners of cells that emit), times the exponent of a lobe that reaches them, or a

@@ -116,6 +116,14 @@ impl Sky {
         }
     }
 
+    /// No direction has more.
+    pub(super) fn most(&self) -> DVec3 {
+        match self.0 {
+            Kind::Constant(most) | Kind::Overcast { zenith: most, .. } => most,
+            Kind::Clear { scale, .. } => scale * 11.36,
+        }
+    }
+
     /// Where it changes fast. About the sun the radiance is a cone: its tip is to be in a triangle so small that it does not matter.
     pub(super) fn peak(&self) -> Option<Peak> {
         match self.0 {

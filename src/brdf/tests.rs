@@ -11,10 +11,10 @@ use crate::scene::{self, Material};
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-const RHO: DVec3 = DVec3::new(0.9, 0.5, 0.1);
-const HEMISPHERE: [DVec3; 4] = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
+pub(super) const RHO: DVec3 = DVec3::new(0.9, 0.5, 0.1);
+pub(super) const HEMISPHERE: [DVec3; 4] = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
 
-fn at(degrees: f64, azimuth: f64) -> DVec3 {
+pub(super) fn at(degrees: f64, azimuth: f64) -> DVec3 {
     let (sin, cos) = degrees.to_radians().sin_cos();
     DVec3::new(sin * azimuth.cos(), sin * azimuth.sin(), cos)
 }
@@ -108,7 +108,7 @@ fn no_more_is_reflected_than_comes() {
 
 /// The integral over the hemisphere by 100 points a field of a grid in azimuth and height, finer towards the azimuth of `axis`, the horizon and
 /// the normal.
-fn polar(axis: DVec3, fields: u32, f: &impl Fn(DVec3) -> DVec3) -> DVec3 {
+pub(super) fn polar(axis: DVec3, fields: u32, f: &impl Fn(DVec3) -> DVec3) -> DVec3 {
     let n = f64::from(fields);
     let middle = axis.y.atan2(axis.x);
     let mut sum = DVec3::ZERO;

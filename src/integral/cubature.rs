@@ -48,6 +48,13 @@ pub enum Smoothness {
     Smooth,
     /// It has kinks at places that are not known: estimates do not, and cost more.
     Kinked,
+    /// It is smooth, and goes up and down everywhere as spherical harmonics to that band do: no triangle is larger than a wave.
+    Waves {
+        /// The band.
+        band: u16,
+    },
+    /// It has kinks everywhere, as what is interpolated in a table: no triangle is longer than 0.15, and estimates are as for [`Smoothness::Kinked`].
+    Tabulated,
 }
 
 /// How precise an integral is to be, and what it may cost.
@@ -109,6 +116,7 @@ pub struct Cubature<F> {
     f: F,
     peaks: Vec<Peak>,
     smoothness: Smoothness,
+    longest: f64,
     heap: BinaryHeap<Part>,
     evaluations: usize,
 }
@@ -120,7 +128,13 @@ impl<F: Fn(DVec3) -> DVec3> Cubature<F> {
             let axis = (peak.axis / peak.axis.abs().max_element()).try_normalize()?;
             (peak.width > 0.0).then_some(Peak { axis, width: peak.width.max(NARROWEST) })
         };
-        Self { f, peaks: peaks.iter().filter_map(unit).collect(), smoothness, heap: BinaryHeap::new(), evaluations: 0 }
+        let peaks = peaks.iter().filter_map(unit).collect();
+        let longest = match smoothness {
+            Smoothness::Smooth | Smoothness::Kinked => LONGEST,
+            Smoothness::Waves { band } => LONGEST.min(4.0 / f64::from(band.max(1))),
+            Smoothness::Tabulated => 0.15,
+        };
+        Self { f, peaks, smoothness, longest, heap: BinaryHeap::new(), evaluations: 0 }
     }
 
     /// Adds a convex polygon, over which the function is multiplied by `weight`, component by component.
@@ -200,7 +214,7 @@ impl<F: Fn(DVec3) -> DVec3> Cubature<F> {
     fn is_coarse(&self, corners: [DVec3; 3]) -> bool {
         let [a, b, c] = corners;
         let longest = longest_side(corners).1;
-        if longest > LONGEST {
+        if longest > self.longest {
             return true;
         }
         let centre = (a + b + c) / 3.0;

@@ -12,6 +12,7 @@ mod cubature;
 mod flux;
 mod form_factor;
 mod gradient;
+mod harmonics;
 mod moments;
 mod precise;
 mod receiver;
@@ -20,19 +21,23 @@ mod sums;
 mod unit;
 mod visible;
 mod zonal;
+mod zonal_sum;
 
 #[cfg(test)]
 mod tests;
 
-pub(crate) use clip::{clip, unit_outline};
+pub(crate) use clip::{clip, perimeter, unit_outline};
 pub use cubature::{Cubature, CubatureOptions, Integral, Peak, Smoothness, integrate};
 pub(crate) use cubature::{Linear, Weight};
 pub use form_factor::{form_factor, form_factor_of_units};
 pub use gradient::{GradientError, IrradianceGradient};
+pub use harmonics::{Harmonics, harmonics};
+pub(crate) use harmonics::{count as harmonic_count, index as harmonic_index};
 pub use moments::{Estimate, axial_moment, double_axis_moment};
 pub(crate) use receiver::Receiver;
 pub use solid_angle::{solid_angle, solid_angle_of_units};
 pub use unit::UnitDirection;
 pub use zonal::zonal_integrals;
+pub use zonal_sum::ZonalSum;
 
 pub use sums::{PolygonSum, Sums};

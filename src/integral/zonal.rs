@@ -33,48 +33,98 @@ use glam::DVec3;
 /// assert!(zonal.iter().zip(expected).all(|(z, e)| (z - e).abs() < 1e-14));
 /// ```
 pub fn zonal_integrals(boundary: &[DVec3], axis: DVec3, degree: u16) -> Vec<f64> {
-    let count = usize::from(degree) + 1;
-    let mut zonal = vec![0.0; count];
+    let mut zonal = vec![0.0; usize::from(degree) + 1];
     let Some(axis) = (axis / axis.abs().max_element()).try_normalize() else { return zonal };
     let outline = unit_outline(boundary);
     zonal[0] = solid_angle(&outline);
-    for [&a, &b] in arcs(&outline) {
-        let cross = a.cross(b - a);
-        let sine = cross.length();
-        if sine > 0.0 {
-            add_arc([a, b], cross / sine, sine.atan2(a.dot(b)), axis, &mut zonal);
-        }
+    for arc in &long_arcs(&outline) {
+        arc.add(axis, &mut zonal);
     }
     zonal
 }
 
-/// Adds what an arc of that normal and length has of all degrees but 0.
-fn add_arc([a, b]: [DVec3; 2], normal: DVec3, theta: f64, axis: DVec3, zonal: &mut [f64]) {
-    let cosines = [axis.dot(a), axis.dot(b)];
-    let slopes = [axis.dot(normal.cross(a)), axis.dot(normal.cross(b))];
-    let height = axis.dot(normal);
-    // C - 1, without the cancellation.
-    let less = -height * height;
-    // C, D and P at both ends, of the degree before and of the one before that.
-    let mut values = [0.0, theta];
-    let mut slopes_of = [0.0, 0.0];
-    let mut ends = [[0.0; 2], [1.0; 2]];
-    for (l, sum) in zonal.iter_mut().enumerate().skip(1) {
-        let degree = l as f64;
-        let slope = if l == 1 { theta } else { slopes_of[0] + (2.0 * degree - 1.0) * values[1] };
-        let bracket = ends[1][1] * slopes[1] - ends[1][0] * slopes[0];
-        let value = if l == 1 {
-            -bracket
-        } else {
-            let product = ((degree - 1.0) * values[0] + less * slopes_of[1] - bracket) / degree;
-            ((2.0 * degree - 1.0) * product - (degree - 1.0) * values[0]) / degree
-        };
-        *sum += height * slope / (degree * (degree + 1.0));
-        let next = [0, 1]
-            .map(|end| ((2.0 * degree - 1.0) * cosines[end] * ends[1][end] - (degree - 1.0) * ends[0][end]) / degree);
-        values = [values[1], value];
-        slopes_of = [slopes_of[1], slope];
-        ends = [ends[1], next];
+/// The arcs of an outline that have a length.
+pub(super) fn long_arcs(outline: &[DVec3]) -> Vec<LongArc> {
+    arcs(outline).filter_map(|[&a, &b]| LongArc::new(a, b)).collect()
+}
+
+/// An arc of at most 90 degrees between two unit vectors.
+pub(super) struct LongArc {
+    /// Its ends a and b.
+    ends: [DVec3; 2],
+    /// e x a and e x b.
+    along: [DVec3; 2],
+    /// e.
+    pub(super) normal: DVec3,
+    /// Its length.
+    pub(super) theta: f64,
+}
+
+impl LongArc {
+    fn new(a: DVec3, b: DVec3) -> Option<Self> {
+        let cross = a.cross(b - a);
+        let sine = cross.length();
+        if sine == 0.0 {
+            return None;
+        }
+        let normal = cross / sine;
+        Some(Self { ends: [a, b], along: [normal.cross(a), normal.cross(b)], normal, theta: sine.atan2(a.dot(b)) })
+    }
+
+    /// Adds what the arc has of all degrees but 0 about a unit axis.
+    pub(super) fn add(&self, axis: DVec3, zonal: &mut [f64]) {
+        let cosines = self.ends.map(|end| axis.dot(end));
+        let slopes = self.along.map(|along| axis.dot(along));
+        let height = axis.dot(self.normal);
+        // C - 1, without the cancellation.
+        let less = -height * height;
+        // C, D and P at both ends, of the degree before and of the one before that.
+        let mut values = [0.0, self.theta];
+        let mut slopes_of = [0.0, 0.0];
+        let mut ends = [[0.0; 2], [1.0; 2]];
+        for (l, sum) in zonal.iter_mut().enumerate().skip(1) {
+            let degree = l as f64;
+            let slope = if l == 1 { self.theta } else { slopes_of[0] + (2.0 * degree - 1.0) * values[1] };
+            let bracket = ends[1][1] * slopes[1] - ends[1][0] * slopes[0];
+            let value = if l == 1 {
+                -bracket
+            } else {
+                let product = ((degree - 1.0) * values[0] + less * slopes_of[1] - bracket) / degree;
+                ((2.0 * degree - 1.0) * product - (degree - 1.0) * values[0]) / degree
+            };
+            *sum += height * slope / (degree * (degree + 1.0));
+            let next = [0, 1].map(|end| {
+                ((2.0 * degree - 1.0) * cosines[end] * ends[1][end] - (degree - 1.0) * ends[0][end]) / degree
+            });
+            values = [values[1], value];
+            slopes_of = [slopes_of[1], slope];
+            ends = [ends[1], next];
+        }
+    }
+}
+
+/// What rounding may leave of a zonal integral of degree l >= 1 over an outline in units of `f64::EPSILON`, by an arc: for arcs whose normals have the cosines h
+/// to the axis it is the sum of |h| (`fixed` + `by_length` theta).
+///
+/// *What goes in.* `P_l` of an end is off by 3 (l + l^2 / 4): each step of its recurrence adds at most 3, and one of step k has grown by no more than
+/// 1 + k log(l / k) (the solution is bounded by its value at 1). An end itself is off by 4, which changes `P_l` g' by at most 4 l (Bernstein). So the bracket, times
+/// 2 / l, brings 48 + 3 l into `C_l`, and its other terms, of size theta, bring 8 theta; `D_l` gets twice its own rounding.
+///
+/// *What comes out.* The response of `Z_l` to an error of 1 in each `C_k` depends on nothing but h. Its sum over k, the largest for 2,001 values of h from 0 to 1, was
+/// computed for all l to 65, and is at most 0.35 + 0.08 l; to a relative error of 1 in each `D_k` it is 1.5 theta + l^2 theta / 43.
+pub(super) struct Rounding {
+    pub(super) fixed: f64,
+    pub(super) by_length: f64,
+}
+
+impl Rounding {
+    /// The highest degree of which the responses are known.
+    pub(super) const DEGREES: u16 = 65;
+
+    pub(super) fn of(degree: u16) -> Self {
+        let l = f64::from(degree);
+        let response = 0.35 + 0.08 * l;
+        Self { fixed: response * (48.0 + 3.0 * l), by_length: 8.0 * response + 2.0 * (1.5 + l * l / 43.0) }
     }
 }
 

@@ -26,6 +26,7 @@ mod json;
 mod lines;
 #[cfg(feature = "json")]
 pub mod matrix;
+mod merl;
 pub mod mtl;
 mod number;
 pub mod obj;
@@ -35,6 +36,7 @@ pub mod ply;
 mod point_factors;
 mod points;
 mod quoted;
+mod sh;
 pub mod stl;
 mod svg;
 #[cfg(any(feature = "cityjson", feature = "gltf", feature = "json"))]
@@ -53,8 +55,10 @@ pub use contour_json::{
 pub use error::{Fault, Faults, Place, ReadError};
 #[cfg(feature = "json")]
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
+pub use merl::{parse_merl, read_merl, write_merl};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
+pub use sh::{parse_sh, read_sh, write_sh};
 pub use svg::{BrdfPicture, SvgOptions, write_brdf_svg, write_svg};
 pub use visible_obj::{fragment_groups, visible_groups};
 

@@ -107,7 +107,7 @@ impl Rule {
 /// is steep what is of degree 8 is taken for it, else what is of degree 7, and if it is slow, as at a kink, nothing is taken to fall off. The bounds were
 /// chosen on the random cases of the tests, among a dozen that keep 99% of estimates honest.
 fn left_over([first, second, third, fourth]: [f64; 4], smoothness: Smoothness) -> f64 {
-    if smoothness == Smoothness::Kinked {
+    if matches!(smoothness, Smoothness::Kinked | Smoothness::Tabulated) {
         // A weak kink does not show beside what is smooth: nothing falls off.
         return 2.0 * fourth;
     }

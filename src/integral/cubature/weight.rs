@@ -35,6 +35,11 @@ impl Linear {
         Self { above: DMat3::from_cols(row(0), row(1), row(2)).transpose(), below, range: [low, high] }
     }
 
+    /// The largest values.
+    pub(crate) fn most(&self) -> DVec3 {
+        self.range[1]
+    }
+
     /// In a unit direction.
     pub(crate) fn at(&self, direction: DVec3) -> DVec3 {
         let ratio = self.above * direction / self.below.dot(direction);

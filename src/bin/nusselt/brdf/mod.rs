@@ -5,9 +5,10 @@ mod parse;
 pub(crate) use parse::colour;
 
 use crate::failure::Failure;
-use nusselt::brdf::{Brdf, Sum};
+use nusselt::brdf::{Brdf, Sum, Unmeasured};
+use nusselt::io::{ReadError, read_merl, read_sh};
 use nusselt::scene::Material;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// The grammar, for `--help`.
@@ -23,8 +24,10 @@ R,G,B. N is an exponent from 0 to 1000000, A a roughness from 0.0001 to 10 (the 
   ashikhmin:N[,N]:RS[:RD]         Ashikhmin and Shirley; RD, of the base, is 0 if left out
   ggx:A[,A][:FRESNEL]             microfacets; FRESNEL is all (everything is reflected), a reflectance at normal incidence (Schlick),
                                   ior=N (a dielectric), or ior=N;k=K (a metal; N and K are numbers or R,G,B)
+  ltc:A[:RHO]                     ggx as a linearly transformed cosine, A from 0.0025 to 1: fast, with its distance to ggx in the error
   mirror[:FRESNEL]                a smooth surface
   gltf:BASE:METALLIC:ROUGHNESS    metallic-roughness of glTF; BASE is a reflectance
+  merl:FILE                       measurements in MERL's format; sh:FILE a table of spherical harmonics. Names of files have no +
   material                        what the scene says of the polygon that --eye is on";
 
 /// A sum of models.
@@ -36,6 +39,9 @@ pub(crate) struct BrdfSpec {
 #[derive(Clone)]
 enum Part {
     Model(Arc<dyn Brdf>),
+    /// Measurements, and tables of spherical harmonics, in files.
+    Merl(PathBuf),
+    Sh(PathBuf),
     /// Of the polygon that one stands on.
     Material,
 }
@@ -63,6 +69,8 @@ impl Part {
     fn brdf(&self, material: Option<&Material>, file: &Path) -> Result<Box<dyn Brdf>, Failure> {
         match (self, material) {
             (Self::Model(model), _) => Ok(Box::new(model.clone())),
+            (Self::Merl(path), _) => Ok(Box::new(read_merl(path, Unmeasured::default()).map_err(|error| refused(&error))?)),
+            (Self::Sh(path), _) => Ok(Box::new(read_sh(path).map_err(|error| refused(&error))?)),
             (Self::Material, Some(material)) => material
                 .brdf()
                 .map_err(|error| Failure::about(file, &format_args!("material {:?}: {error}", material.name))),
@@ -72,4 +80,8 @@ impl Part {
             )),
         }
     }
+}
+
+fn refused(error: &ReadError) -> Failure {
+    Failure::Work(error.to_string())
 }

@@ -3,9 +3,10 @@
 use super::{BrdfSpec, Part};
 use glam::DVec3;
 use nusselt::brdf::{
-    AshikhminShirley, Blinn, Brdf, BrdfError, Fresnel, Ggx, Lafortune, Lambert, MetallicRoughness, Mirror, OrenNayar,
-    Phong, Ward,
+    AshikhminShirley, Blinn, Brdf, BrdfError, Fresnel, Ggx, GgxLtc, Lafortune, Lambert, MetallicRoughness, Mirror,
+    OrenNayar, Phong, Ward,
 };
+use std::path::PathBuf;
 use std::sync::Arc;
 
 impl BrdfSpec {
@@ -85,10 +86,16 @@ fn part(text: &str) -> Result<Part, String> {
             fields.expect(3..=3, "gltf:BASE:METALLIC:ROUGHNESS")?;
             fields.made(MetallicRoughness::new(fields.colour(0)?, fields.number(1)?, fields.number(2)?))?
         }
-        // Measured data, `merl:FILE` and `sh:FILE`, and `ltc` take their place here, in `Part` and in `GRAMMAR`.
+        "ltc" => {
+            fields.expect(1..=2, "ltc:A[:RHO]")?;
+            fields.made(GgxLtc::new(fields.colour_or(1, DVec3::ONE)?, fields.number(0)?))?
+        }
+        "merl" => return Ok(Part::Merl(fields.file("merl:FILE")?)),
+        "sh" => return Ok(Part::Sh(fields.file("sh:FILE")?)),
         "" => return Err("a model is missing; --help lists them".to_owned()),
         _ => {
-            let known = "lambert, oren-nayar, phong, blinn, lafortune, ward, ashikhmin, ggx, mirror, gltf and material";
+            let known = "lambert, oren-nayar, phong, blinn, lafortune, ward, ashikhmin, ggx, ltc, mirror, gltf, merl, \
+                         sh and material";
             return Err(format!("there is no model {name:?}; there are {known}"));
         }
     };
@@ -104,6 +111,12 @@ struct Fields<'a> {
 impl Fields<'_> {
     fn expect(&self, count: std::ops::RangeInclusive<usize>, form: &str) -> Result<(), String> {
         if count.contains(&self.fields.len()) { Ok(()) } else { Err(format!("it takes the form {form}")) }
+    }
+
+    /// All that follows: a name may have colons.
+    fn file(&self, form: &str) -> Result<PathBuf, String> {
+        let name = self.fields.join(":");
+        if name.is_empty() { Err(format!("it takes the form {form}")) } else { Ok(PathBuf::from(name)) }
     }
 
     fn made<B: Brdf + 'static>(&self, made: Result<B, BrdfError>) -> Result<Arc<dyn Brdf>, String> {
