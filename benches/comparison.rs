@@ -6,7 +6,7 @@ use glam::DVec3;
 use nusselt::bsp::{BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
 use nusselt::contour::{Domain, SceneOrder, ViewOptions, ViewSpace, Viewpoint};
-use nusselt::hemicube::{Hemicube, Rays};
+use nusselt::hemicube::{Hemicube, Method, Rays};
 use nusselt::samples::{Kind, generate};
 use std::hint::black_box;
 
@@ -23,10 +23,10 @@ fn rows(c: &mut Criterion) {
         let mut group = c.benchmark_group(polygons.to_string());
         group.sample_size(20);
         let bsp = SceneBsp::build(&scene, &BspOptions::default()).expect("epsilon is 0");
-        for (name, order) in [("contour", bsp.into()), ("contour by boxes", SceneOrder::from(SceneBvh::build(&scene)))]
-        {
+        let boxes = SceneBvh::build(&scene);
+        for (method, order) in [(Method::Contour, SceneOrder::from(bsp)), (Method::ContourByBoxes, boxes.into())] {
             let (mut space, up) = (ViewSpace::new(), Domain::Hemisphere(DVec3::Z));
-            group.bench_function(name, |b| {
+            group.bench_function(method.name(), |b| {
                 b.iter(|| {
                     let image = order.view_in(&mut space, &eye(), &up, &ViewOptions::default());
                     black_box(image.expect("a view").form_factors());

@@ -1,11 +1,16 @@
 //! No stage of the predicates but the last, integers of arbitrary width, touches the heap once a kernel is
-//! warm; readers of files take memory for what is there, not for what is promised.
+//! warm; views use the memory of others; readers of files take memory for what is there, not for what is promised.
 
 use glam::DVec3;
+use nusselt::bsp::{BspOptions, SceneBsp};
+use nusselt::bvh::SceneBvh;
+use nusselt::contour::{Domain, SceneOrder, ViewOptions, ViewSpace, Viewpoint};
 use nusselt::exact::{Direction, DirectionId, Kernel, Plane, Point, PredicateStats, Splitter, SplitterId, orient3d};
 use nusselt::io::{ReadOptions, ply, stl};
 #[cfg(all(feature = "gltf", feature = "cityjson"))]
 use nusselt::io::{cityjson, gltf};
+use nusselt::samples::{Kind, generate};
+use nusselt::scene::Scene;
 
 /// An eye, three planes through one line of sight and more in general position.
 struct Setting {
@@ -164,4 +169,41 @@ fn json_that_promises_much_and_holds_little_takes_little_memory() {
     );
     let city = memory(|| cityjson::parse(text.as_bytes(), "x.json", &options).is_ok());
     assert!(city < 60 * text.len() as u64, "{city} bytes for {}", text.len());
+}
+
+/// How often each of some views of a room asks for memory if it may use what views from the same points have left; and how many insertions
+/// it makes.
+fn allocations_of_views(polygons: usize, order_of: fn(&Scene) -> SceneOrder) -> Vec<(u64, usize)> {
+    let room = generate(Kind::Room, polygons, 1).expect("a size the generator takes");
+    let order = order_of(&room.to_builder().build().expect("a generated scene is valid"));
+    let eyes: Vec<_> = room.free_points(4, 3).into_iter().map(|p| Viewpoint::free(DVec3::from(p))).collect();
+    let mut space = ViewSpace::new();
+    let mut view = |eye: &Viewpoint| {
+        let mut inserted = 0;
+        let info = allocation_counter::measure(|| {
+            let image = order.view_in(&mut space, eye, &Domain::Hemisphere(DVec3::Z), &ViewOptions::default());
+            inserted = image.expect("a view").stats().inserted;
+        });
+        (info.count_total, inserted)
+    };
+    for eye in &eyes {
+        view(eye);
+    }
+    eyes.iter().map(view).collect()
+}
+
+#[test]
+fn views_in_memory_of_others_ask_for_little_however_much_they_put_in() {
+    for polygons in [200, 1_000, 10_000] {
+        let by_boxes = allocations_of_views(polygons, |scene| SceneBvh::build(scene).into());
+        // The octants and the horizon, and integers of arbitrary width now and then.
+        assert!(by_boxes.iter().all(|(count, _)| *count <= 20), "{polygons} polygons: {by_boxes:?}");
+        let by_bsp = allocations_of_views(polygons, |scene| {
+            SceneBsp::build(scene, &BspOptions::default()).expect("epsilon is 0").into()
+        });
+        // A node lists the fragments that are seen from behind apart.
+        assert!(by_bsp.iter().all(|(count, n)| *count <= 20 + *n as u64 / 10), "{polygons} polygons: {by_bsp:?}");
+        let most = by_boxes.iter().map(|(_, inserted)| *inserted).max();
+        assert!(polygons < 10_000 || most > Some(100), "what many insertions take is tested: {by_boxes:?}");
+    }
 }

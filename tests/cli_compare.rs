@@ -94,7 +94,8 @@ fn json_has_a_row_for_each_method_with_time_errors_losses_and_evaluations() {
             assert!(number(row, key) >= 0.0, "{key}");
         }
         assert_eq!(number(row, "views").to_bits(), 1.0f64.to_bits());
-        assert!(number(row, "view_ms_mean") > 0.0 && number(row, "threads") >= 1.0);
+        assert!(number(row, "view_ms_mean") > 0.0);
+        assert_eq!(row["threads"], json!(1), "views are taken by one thread, however many there are");
         assert!(number(row, "median_error") <= number(row, "p99_error"));
         assert!(number(row, "p99_error") <= number(row, "max_error"));
         assert!(number(row, "lost") < number(row, "visible"));
@@ -159,6 +160,9 @@ fn in_words_it_is_a_table() {
         assert!(line.starts_with(&format!("{name} ")), "{line}");
     }
     assert_eq!(text[at..].lines().count(), 1 + expected.len());
+    let setup = |line: &str| line.split_whitespace().rev().nth(9).and_then(|word| word.parse::<f64>().ok());
+    assert!(text[at..].lines().next().is_some_and(|header| header.contains("setup")));
+    assert!(text[at..].lines().skip(1).all(|line| setup(line).is_some_and(|ms| ms >= 0.0)), "{text}");
     let bare = "compare box.obj --eye 278,273,1 --normal 0,0,1 --resolutions none --rays none";
     assert!(!folder.run(bare, "", 0).contains("hemicube"));
     assert_eq!(folder.run(&format!("{bare} --quiet"), "", 0), "");
@@ -181,7 +185,6 @@ fn points_that_cannot_be_used_are_named_by_line() {
         ("1 2 3 0 -0 0\n", "standard input:1: the normal 0 0 0 has no direction"),
         ("1 2 3 0 0 1 1.5\n", "standard input:1: `1.5` is not the number of a polygon"),
         ("1 2 3 0 0 1\n\n1 2 3 0 0 1 16\n", "standard input:3: there is no polygon 16: the scene has 16"),
-        ("1 2 3 0 0 1\n1e308 2 3 0 0 1\n", "standard input:2: the eye is too far away for rays"),
     ] {
         let message = folder.run(&format!("compare box.obj --points - {QUICK}"), text, 1);
         assert!(message.contains(named), "{text:?}: {message}");
@@ -196,13 +199,54 @@ fn points_that_cannot_be_used_are_named_by_line() {
 }
 
 #[test]
-fn far_eyes_are_compared_without_rays() {
+fn far_eyes_are_compared_by_all_methods() {
     let folder = Folder::new("far");
-    let far = "--eye 1e308,2,3 --normal -1,0,0";
-    let message = folder.run(&format!("compare box.obj {far} {QUICK}"), "", 1);
-    assert!(message.contains("box.obj: the eye is too far away for rays") && message.contains("--rays none"));
-    let summary = folder.compare(&format!("{far} --resolutions 16 --rays none"), "");
-    assert_eq!(rows(&summary).len(), 4);
+    // One point that is far away does not keep the others from being compared.
+    let summary =
+        folder.compare(&format!("--points - {QUICK}"), "278 273 1 0 0 1\n278 273 -9000 0 0 1\n1e308 2 3 -1 0 0\n");
+    assert_eq!((rows(&summary).len(), &summary["views"]), (7, &json!(3)));
+    let summary = folder.compare("--eye 278,273,-9000 --normal 0,0,1 --resolutions 1024 --rays 3000000 --rounds 1", "");
+    for row in rows(&summary) {
+        let (median, factors) = (row["median_error"].as_f64(), row["errors"][1]["factors"].as_u64());
+        assert!(median.is_some_and(|error| error < 0.1) && factors > Some(1), "{row}");
+    }
+}
+
+#[test]
+fn where_no_form_factor_is_large_enough_there_is_no_error_to_tell() {
+    let folder = Folder::new("none");
+    let far = "--eye 278,273,-90000 --normal 0,0,1 --resolutions 16 --rays 10 --rounds 1";
+    let summary = folder.compare(far, "");
+    for row in rows(&summary) {
+        for errors in [row, &row["errors"][0], &row["errors"][1]] {
+            assert!(["max_error", "p99_error", "median_error"].iter().all(|key| errors[*key].is_null()), "{row}");
+        }
+        let is_contour = row["method"].as_str().is_some_and(|name| name.starts_with("contour"));
+        assert_eq!(row["lost"].as_u64().expect("a count") > 0, !is_contour, "{row}");
+    }
+    let text = folder.run(&format!("compare box.obj {far}"), "", 0);
+    let table = &text[text.find("method ").expect("a header")..];
+    for line in table.lines().skip(1) {
+        assert_eq!(line.split_whitespace().filter(|word| *word == "-").count(), 4, "{line}");
+    }
+}
+
+#[test]
+fn with_an_epsilon_the_reference_is_by_boxes_and_is_named() {
+    let folder = Folder::new("epsilon");
+    // Two squares that cross each other, by less than the epsilon.
+    let square = |z: [f64; 2]| format!("v -1 -1 {}\nv 1 -1 {}\nv 1 1 {}\nv -1 1 {}\n", z[0], z[1], z[1], z[0]);
+    folder.write("crossed.obj", &format!("{}{}f 1 2 3 4\nf 5 6 7 8\n", square([1.0, 1.2]), square([1.2, 1.0])));
+    let line = "compare crossed.obj --eye 0,0,0 --normal 0,0,1 --resolutions none --rays none --rounds 1";
+    for (rest, name, worst) in [("", "contour", 0), (" --epsilon 0.5", "contour-boxes", 1)] {
+        let summary: Value = serde_json::from_str(&folder.run(&format!("{line}{rest} --json"), "", 0)).expect("JSON");
+        assert_eq!(summary["reference"], json!(name));
+        let errors: Vec<_> = rows(&summary).iter().map(|row| row["max_error"].as_f64().expect("an error")).collect();
+        assert!((errors[0] > 0.1) == (worst > 0) && errors[1] < 1e-12, "{rest}: {errors:?}");
+        let words = folder.run(&format!("{line}{rest}"), "", 0);
+        assert!(words.contains(&format!("reference    {name}")), "{words}");
+        assert_eq!(words.contains("not exact with an epsilon of 0.5"), worst > 0, "{words}");
+    }
 }
 
 #[test]

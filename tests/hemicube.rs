@@ -336,9 +336,33 @@ fn rays_give_the_same_for_the_same_seed_and_refuse_what_makes_no_sense() {
     assert_eq!(rays.view(&viewpoint, normal, 0, 1).err(), Some(BaselineError::NoRays));
     assert_eq!(rays.view(&viewpoint, DVec3::ZERO, 9, 1).err(), Some(BaselineError::BadNormal));
     assert_eq!(rays.view(&free([f64::INFINITY, 0.0, 0.0]), normal, 9, 1).err(), Some(BaselineError::EyeNotFinite));
-    assert_eq!(rays.view(&free([1e300, 0.0, 0.0]), normal, 9, 1).err(), Some(BaselineError::EyeTooFar));
     let mut nothing = Rays::new(&Scene::builder().build().unwrap());
     assert!((nothing.view(&free([0.0; 3]), normal, 9, 1).unwrap().background() - 1.0).abs() < 1e-15);
+}
+
+#[test]
+fn rays_come_from_any_distance() {
+    // A square of 2 x 2 that faces the eye, in the middle of what it sees: 4 / (pi d^2) from afar.
+    let square = |z: f64| [[-1.0, -1.0, z], [1.0, -1.0, z], [1.0, 1.0, z], [-1.0, 1.0, z]];
+    let scene = of(&[&square(0.0), &square(1e-3)]);
+    let mut rays = Rays::new(&scene);
+    for distance in [3.0, 3.9, 4.1, 8.1, 20.0] {
+        let n = 1_000_000;
+        let view = rays.view(&free([0.0, 0.0, -distance]), DVec3::Z, n, 1).unwrap();
+        let side = 1.0 / f64::hypot(1.0, distance);
+        let exact = 4.0 / std::f64::consts::PI * side * side.atan();
+        let found = view.of(PolygonId(0));
+        // Never more than that of independent rays.
+        let deviation = (exact * (1.0 - exact) / f64::from(n)).sqrt();
+        assert!((found - exact).abs() < 5.0 * deviation, "{distance}: {found} instead of {exact}");
+        assert_eq!(view.of(PolygonId(1)).to_bits(), 0, "it is behind the other one, by a thousandth");
+    }
+    // Past everything, away from it, and from where nothing is seen any more.
+    for (eye, normal) in [([9.0, 0.0, 0.0], DVec3::X), ([1e300, 0.0, 0.0], -DVec3::X), ([0.0, -1e308, 1e308], DVec3::Y)]
+    {
+        let background = rays.view(&free(eye), normal, 1000, 1).unwrap().background();
+        assert_eq!(background.to_bits(), 1.0f64.to_bits(), "{eye:?}");
+    }
 }
 
 #[test]

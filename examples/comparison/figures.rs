@@ -86,7 +86,7 @@ fn worst() -> Axis {
         title: "worst relative error of factors > 1e-3",
         range: (0.005, 20.0),
         labels: vec![0.01, 0.1, 1.0, 10.0],
-        value: |row| row.above_1e3.quantile(1.0),
+        value: |row| row.above_1e3.quantile(1.0).unwrap_or(f64::NAN),
         label: |x| format!("{:.0}%", 100.0 * x),
     }
 }

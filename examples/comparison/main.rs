@@ -1,9 +1,13 @@
 //! The measured part of docs/comparison.md and its figures: `cargo run --release --example comparison`.
 //!
 //! Hemisphere views, normal up, of the generated room from points inside, by all methods, on one thread. Rewrites what is between the marks in
-//! docs/comparison.md, and docs/images/comparison-*.svg. Another folder in their place, with a comparison.md in it, may be named.
+//! docs/comparison.md, a paragraph of README.md, and docs/images/comparison-*.svg. Another folder in place of docs, with a comparison.md in it, may be
+//! named; README.md stays as it is then.
 
+mod derived;
 mod figures;
+#[path = "../common/machine.rs"]
+mod machine;
 #[path = "../common/marks.rs"]
 mod marks;
 mod tables;
@@ -35,14 +39,20 @@ struct Room {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let own = || Path::new(env!("CARGO_MANIFEST_DIR")).join("docs");
-    let docs = std::env::args_os().nth(1).map_or_else(own, PathBuf::from);
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let other = std::env::args_os().nth(1).map(PathBuf::from);
+    let docs = other.clone().unwrap_or_else(|| root.join("docs"));
     // Before anything is measured.
     let page = marks::Page::open(&docs.join("comparison.md"), "measured")?;
+    let readme = other.is_none().then(|| marks::Page::open(&root.join("README.md"), "comparison")).transpose()?;
+    rayon::ThreadPoolBuilder::new().num_threads(1).build_global()?;
     let start = Instant::now();
     let rooms = POLYGONS.map(measure).into_iter().collect::<Result<Vec<_>, _>>()?;
     figures::draw(&rooms, &docs.join("images"))?;
-    page.write(&tables::text(&rooms))?;
+    page.write(&format!("{}\n{}\n", tables::text(&rooms), machine::sentence()))?;
+    if let Some(readme) = readme {
+        readme.write(&derived::summary(&rooms))?;
+    }
     eprintln!("{:.0} s", start.elapsed().as_secs_f64());
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! The measured part of docs/comparison.md.
 
-use crate::{ROUNDS, Room, VIEWS};
+use crate::{ROUNDS, Room, VIEWS, derived};
 use nusselt::hemicube::{ComparisonRow, Method};
 use std::fmt::Write;
 
@@ -53,7 +53,7 @@ pub(crate) fn text(rooms: &[Room]) -> String {
             setup(|method| matches!(method, Method::Rays { .. }))
         );
     }
-    text.trim_end().to_owned() + "\n"
+    text + &derived::text(rooms)
 }
 
 fn one_row(text: &mut String, polygons: usize, row: &ComparisonRow) {
@@ -74,7 +74,9 @@ fn one_row(text: &mut String, polygons: usize, row: &ComparisonRow) {
     );
 }
 
-fn percent(error: f64) -> String {
+/// `-` where there are no form factors to compare.
+pub(crate) fn percent(error: Option<f64>) -> String {
+    let Some(error) = error else { return "-".to_owned() };
     match 100.0 * error {
         0.0 => "0".to_owned(),
         rounding if rounding < 1e-6 => "rounding".to_owned(),

@@ -12,13 +12,18 @@ use std::time::Instant;
 const COUNTS: [usize; 5] = [1_000, 2_000, 3_000, 10_000, 30_000];
 /// The shortest of so many times counts.
 const ROUNDS: usize = 9;
+/// Microseconds a triangle at most.
+const GOAL: f64 = 5.0;
 
 pub(crate) fn part(_: &Path) -> Result<String, Box<dyn Error>> {
     let mut text = String::from(
         "| triangles | their size | visible | cells | build ms | view and form factors ms | us a triangle |\n\
          | ---: | --- | ---: | ---: | ---: | ---: | ---: |\n",
     );
+    let mut growths = Vec::new();
+    let mut missed = Vec::new();
     for (size, name) in [(1.0, "the disc"), (0.1, "a tenth of it")] {
+        let mut times = Vec::new();
         for count in COUNTS {
             eprintln!("{count} triangles of size {size}");
             let scene = triangles(count, size)?;
@@ -36,9 +41,23 @@ pub(crate) fn part(_: &Path) -> Result<String, Box<dyn Error>> {
                 (visible, cells) = (factors.polygons.len(), image.cell_count());
             }
             let each = best * 1e3 / count as f64;
+            times.push(each);
+            if each > GOAL {
+                missed.push(format!("{count} on {name}"));
+            }
             writeln!(text, "| {count} | {name} | {visible} | {cells} | {build:.1} | {best:.2} | {each:.2} |")?;
         }
+        if let (Some(first), Some(last)) = (times.first(), times.last()) {
+            growths.push(format!("{:.2} times as long on {name}", last / first));
+        }
     }
+    let missed = if missed.is_empty() { "nowhere".to_owned() } else { format!("for {}", missed.join(", ")) };
+    let [first, .., last] = COUNTS;
+    writeln!(
+        text,
+        "\nMore than {GOAL} microseconds a triangle: {missed}. From {first} triangles to {last}, each takes {}.",
+        growths.join(" and ")
+    )?;
     Ok(text)
 }
 

@@ -1,6 +1,7 @@
 //! What a view costs, against the polygons of the scene and against those seen.
 
 use crate::plot::{Log, Series, chart};
+use crate::range;
 use glam::DVec3;
 use nusselt::bvh::SceneBvh;
 use nusselt::contour::{Domain, ViewOptions, ViewSpace, Viewpoint};
@@ -57,6 +58,8 @@ pub(crate) fn part(images: &Path) -> Result<String, Box<dyn Error>> {
             "| {kind} | {polygons} | {build_s:.3} | {view_ms:.2} | {factors_ms:.2} | {visible:.0} | {cells:.0} | {each:.2} |"
         )?;
     }
+    let each = |row: &Row| (row.view_ms + row.factors_ms) * 1e3 / row.visible;
+    writeln!(text, "\nMicroseconds a visible polygon, of all scenes: {}.", range(rows.iter().map(each)))?;
     Ok(text)
 }
 

@@ -104,7 +104,7 @@ pub(crate) fn facets(scene: &Scene, may_join: impl Fn(PieceId, PieceId) -> bool)
     let (panels, roots) = Panels::of(scene, &skeleton, &[&all], u32::MAX, may_join);
     let facet = |&panel: &u32| {
         let mut pieces = Vec::new();
-        panels.pieces(panel, &mut pieces);
+        panels.pieces(panel, &mut Vec::new(), |piece| pieces.push(piece));
         pieces.sort_unstable();
         let ring = panels.sides(panel).iter().map(|side| vertex(side.point)).collect();
         Facet { solid: solids.solid_of(pieces[0]), pieces, ring }

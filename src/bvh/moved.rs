@@ -44,8 +44,10 @@ impl SceneBvh {
         let bounds = bounds_of_pieces(&scene, &skeleton);
         let solids = old.solids.moved(&scene, &skeleton, &bounds, &carried.pieces);
         let places = refit::places(&old.scene, &scene);
-        let (mut nodes, groups) =
-            refit::refit(&old.nodes, &old.order, |panel, found| old.panels.pieces(panel, found), &places);
+        let held = |panel: u32, found: &mut Vec<PieceId>| {
+            old.panels.pieces(panel, &mut Vec::new(), |piece| found.push(piece));
+        };
+        let (mut nodes, groups) = refit::refit(&old.nodes, &old.order, held, &places);
         let groups: Vec<&[PieceId]> = groups.iter().map(Vec::as_slice).collect();
         let (panels, groups) =
             Panels::of(&scene, &skeleton, &groups, MOST_PIECES, |a, b| solids.are_hidden_together(a, b));

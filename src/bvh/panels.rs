@@ -166,12 +166,12 @@ impl Panels {
         &self.sides[start as usize..end as usize]
     }
 
-    /// The pieces of a panel.
-    pub(crate) fn pieces(&self, panel: u32, found: &mut Vec<PieceId>) {
-        let mut rest = vec![panel];
+    /// Tells the pieces of a panel; `rest` is room for panels to be looked at, empty before and after.
+    pub(crate) fn pieces(&self, panel: u32, rest: &mut Vec<u32>, mut found: impl FnMut(PieceId)) {
+        rest.push(panel);
         while let Some(panel) = rest.pop() {
             match self.panel(panel).halves {
-                None => found.push(self.panel(panel).piece),
+                None => found(self.panel(panel).piece),
                 Some(halves) => rest.extend(halves.panels.into_iter().rev()),
             }
         }
@@ -361,7 +361,7 @@ mod tests {
         let mut all = Vec::new();
         let mut rest = bvh.hierarchy.order.clone();
         for &panel in &rest {
-            panels.pieces(panel, &mut all);
+            panels.pieces(panel, &mut Vec::new(), |piece| all.push(piece));
         }
         all.sort_unstable();
         assert!(all.into_iter().eq(scene.pieces().map(PieceRef::id)));

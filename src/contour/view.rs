@@ -96,7 +96,7 @@ pub struct ViewStats {
     pub predicates: PredicateStats,
 }
 
-/// Levels of the quadtree for a scene of that size, by measurement (docs/performance.md).
+/// Levels of the quadtree for a scene of that size: three classes, read off the table of quadtrees in docs/performance.md.
 fn default_depth(polygons: usize, domain: &Domain) -> u32 {
     match polygons {
         _ if matches!(domain, Domain::Window(_)) => 0,

@@ -181,7 +181,7 @@ impl Blockers<'_> {
                 Content::Boxes(halves) => stack.extend(halves),
                 Content::Panels(range) => {
                     for &panel in &hierarchy.order[range.start as usize..range.end as usize] {
-                        hierarchy.panels.pieces(panel, &mut pieces);
+                        hierarchy.panels.pieces(panel, &mut Vec::new(), |piece| pieces.push(piece));
                     }
                 }
             }

@@ -41,18 +41,21 @@ impl Deviations {
     }
 
     /// The relative error that a share of the form factors, 0 to 1, does not exceed: the smallest of those collected that serves,
-    /// rounded up by less than one part in 4096, but not above the worst, which is not rounded. 0 if there are none. 0.5 is the
-    /// median, 1 the worst.
-    pub fn quantile(&self, share: f64) -> f64 {
+    /// rounded up by less than one part in 4096, but not above the worst, which is not rounded. `None` if no form factor was large enough to be
+    /// collected. 0.5 is the median, 1 the worst.
+    pub fn quantile(&self, share: f64) -> Option<f64> {
+        if self.count == 0 {
+            return None;
+        }
         let rank = (share * self.count as f64).ceil() as usize;
         let mut below = 0;
         for (&size, count) in &self.sizes {
             below += count;
             if below >= rank {
-                return f64::from_bits(size << DROPPED).min(self.worst);
+                return Some(f64::from_bits(size << DROPPED).min(self.worst));
             }
         }
-        self.worst
+        Some(self.worst)
     }
 
     /// How many form factors were compared.
@@ -78,12 +81,14 @@ mod tests {
     #[test]
     fn quantiles_are_those_of_relative_errors_above_the_threshold() {
         let mut deviations = Deviations::above(0.1);
-        assert!(deviations.quantile(1.0) == 0.0);
+        assert_eq!(deviations.quantile(1.0), None);
+        deviations.add([0.0, 0.0], [0.1, 0.0]);
+        assert_eq!((deviations.quantile(0.5), deviations.lost()), (None, 1), "lost, but too small to be collected");
         deviations.add([0.25, 0.5, 0.0, 0.0, 7.0], [0.5, 0.5, 0.05, 0.0, 1.0]);
         deviations.add([0.0], [0.2]);
-        assert_eq!((deviations.count(), deviations.visible(), deviations.lost()), (4, 5, 2));
+        assert_eq!((deviations.count(), deviations.visible(), deviations.lost()), (4, 6, 3));
         for (share, expected) in [(0.0, 0.0), (0.25, 0.0), (0.5, 0.5), (0.75, 1.0), (1.0, 6.0)] {
-            assert!((deviations.quantile(share) - expected).abs() < 1e-15, "{share}");
+            assert!((deviations.quantile(share).expect("some") - expected).abs() < 1e-15, "{share}");
         }
     }
 
@@ -93,11 +98,11 @@ mod tests {
         let error = |k: u32| f64::from(k) * 1e-6;
         deviations.add((0..=100_000).map(|k| 1.0 + error(k)), std::iter::repeat(1.0));
         for (share, exact) in [(0.1, 0.01), (0.5, 0.05), (0.99, 0.099)] {
-            let told = deviations.quantile(share);
+            let told = deviations.quantile(share).expect("many");
             assert!(told > exact * (1.0 - 1e-9) && told < exact * (1.0 + 1.0 / 4096.0) + 1e-6, "{share}: {told}");
         }
         // As it was added: 1.1 - 1.
-        assert!((deviations.quantile(1.0) - 0.1).abs() < 1e-15);
+        assert!((deviations.quantile(1.0).expect("many") - 0.1).abs() < 1e-15);
         assert!(deviations.sizes.len() < 100_000 / 2, "{}", deviations.sizes.len());
     }
 }

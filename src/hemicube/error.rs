@@ -20,9 +20,6 @@ pub enum BaselineError {
     /// The eye has a coordinate that is infinite or not a number.
     #[error("the eye has a coordinate that is not finite")]
     EyeNotFinite,
-    /// The eye is too far away for rays.
-    #[error("the eye is too far away for rays: farther from the middle of the scene than twice its largest extent")]
-    EyeTooFar,
     /// The normal is zero, or not finite.
     #[error("the normal is zero or not finite")]
     BadNormal,

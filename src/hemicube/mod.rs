@@ -27,7 +27,7 @@ mod runs;
 mod view;
 
 pub use analytic::AnalyticView;
-pub use compare::{CompareError, ComparisonRow, Method, compare};
+pub use compare::{CompareError, ComparisonRow, Method, compare, reference_method};
 pub use deviations::Deviations;
 pub use error::BaselineError;
 pub use face::Face;

@@ -76,9 +76,9 @@ impl Local {
     }
 }
 
-/// How far from the middle the eye may be, in units of the scene's reach: the hierarchy is in f32.
+/// Rays of eyes that are farther from the middle than this, in units of the scene's reach, begin nearer: the hierarchy is in f32.
 const FARTHEST: f64 = 4.0;
-/// What boxes are enlarged by in local coordinates. Up to 8 from the middle f32 rounds the eye by 2e-7; over the way to a box, up to 20,
+/// What boxes are enlarged by in local coordinates. Up to 8 from the middle f32 rounds where a ray begins by 2e-7; over the way to a box, up to 20,
 /// rounding the direction adds 6e-7 and the slab test 2e-6.
 const MARGIN: f32 = 4e-6;
 
@@ -108,11 +108,11 @@ impl Rays {
     }
 
     /// What that many rays meet above the tangent plane at a viewpoint, for a normal of any length. If the viewpoint is on a piece,
-    /// that piece and what shares its plane are passed through.
+    /// that piece and what shares its plane are passed through. The eye may be as far away as it likes: rays are in f64 up to the scene, which
+    /// is off by 1e-16 of the way.
     ///
     /// # Errors
-    /// If there are no rays, if the eye is not finite or farther from the middle of the scene, along an axis, than twice its
-    /// largest extent, if the normal has no direction, or if the viewpoint is on a piece of another scene.
+    /// If there are no rays, if the eye is not finite, if the normal has no direction, or if the viewpoint is on a piece of another scene.
     pub fn view(
         &mut self,
         viewpoint: &Viewpoint,
@@ -123,9 +123,6 @@ impl Rays {
         let [t, b, n] = frame(normal).ok_or(BaselineError::BadNormal)?;
         let floor = BaselineError::check_viewpoint(viewpoint, &self.scene)?;
         let eye = self.local.of(viewpoint.eye());
-        if self.bvh.is_some() && eye.abs().max_element() > FARTHEST * self.local.reach {
-            return Err(BaselineError::EyeTooFar);
-        }
         if rays == 0 {
             return Err(BaselineError::NoRays);
         }
@@ -134,10 +131,24 @@ impl Rays {
         for point in disc(rays, seed) {
             let up = (1.0 - point.length_squared()).max(0.0).sqrt();
             let direction = t * point.x + b * point.y + n * up;
-            let seen = self.first_met(eye, direction, floor);
+            let seen = self.start(eye, direction).and_then(|start| self.first_met(start, direction, floor));
             self.hits[seen.map_or(background, PolygonId::index)] += 1;
         }
         Ok(RaysView { rays, hits: &self.hits })
+    }
+
+    /// Where a ray may begin: at the eye, or nearer if that is far away. `None` if it misses the scene.
+    fn start(&self, eye: DVec3, direction: DVec3) -> Option<DVec3> {
+        let reach = self.local.reach;
+        if eye.abs().max_element() <= FARTHEST * reach {
+            return Some(eye);
+        }
+        // More than the square root of 3: a ball around the scene, which the eye is outside of.
+        let radius = 2.0 * reach;
+        let way = -eye.dot(direction);
+        let nearest = eye + direction * way;
+        // Not if something is not a number either.
+        (way > 0.0 && nearest.length() < radius).then(|| nearest - direction * radius)
     }
 
     fn first_met(&self, eye: DVec3, direction: DVec3, floor: Option<PlaneId>) -> Option<PolygonId> {

@@ -89,7 +89,7 @@ pub struct RegionSide {
 impl ContourImage {
     /// The visible regions: by polygon and side, background last, then by their lowest cells. Every cell is in one.
     ///
-    /// The cost is about n log n in the number of cells, once or twice that of the view (docs/performance.md).
+    /// The cost is about n log n in the number of cells; docs/performance.md has it beside that of the view.
     ///
     /// ```
     /// # use nusselt::bsp::{BspOptions, SceneBsp};

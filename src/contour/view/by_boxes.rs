@@ -67,7 +67,7 @@ impl SceneBvh {
     ) -> Result<ContourImage, ViewError> {
         let hierarchy = &*self.hierarchy;
         let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options, space)?;
-        let mut walk = Walk { hierarchy, sight, creases: FxHashMap::default(), parts: Vec::new(), windows: Vec::new() };
+        let mut walk = Walk { hierarchy, sight };
         walk.put_in_windows(domain);
         walk.run(options.max_cells)?;
         Ok(walk.sight.finish(self.clone().into(), viewpoint, domain, space))
@@ -77,11 +77,34 @@ impl SceneBvh {
 struct Walk<'a> {
     hierarchy: &'a Hierarchy,
     sight: Sight<'a>,
+}
+
+/// What it needs until it is done.
+#[derive(Clone, Debug, Default)]
+pub(super) struct WalkBuffers {
+    queue: BinaryHeap<Reverse<Waiting>>,
     creases: FxHashMap<[PlaneId; 2], CircleId>,
     /// Leaves in which a panel is seen, its pieces not told apart yet.
     parts: Vec<(u32, Parts)>,
     /// Pieces that were put in as windows, ascending.
     windows: Vec<PieceId>,
+    /// Those of a panel that are put in one by one.
+    pieces: Vec<PieceId>,
+    /// Parts of a panel of which the pieces are looked for.
+    panels: Vec<u32>,
+}
+
+impl WalkBuffers {
+    /// For another view.
+    pub(super) fn clear(&mut self) {
+        let Self { queue, creases, parts, windows, pieces, panels } = self;
+        queue.clear();
+        creases.clear();
+        parts.clear();
+        windows.clear();
+        pieces.clear();
+        panels.clear();
+    }
 }
 
 /// What is yet to be looked at: what is nearest first, then in an order that is always the same.
@@ -104,7 +127,7 @@ impl Walk<'_> {
     fn run(&mut self, max_cells: usize) -> Result<(), ViewError> {
         let hierarchy = self.hierarchy;
         let eye = self.sight.eye;
-        let mut queue = BinaryHeap::new();
+        let mut queue = std::mem::take(&mut self.sight.buffers.walk.queue);
         let within =
             |distance: f64, what: Item, top: Link| Reverse(Waiting { distance: distance.to_bits(), what, top });
         if let Some(whole) = hierarchy.nodes.first() {
@@ -141,6 +164,7 @@ impl Walk<'_> {
                 }
             }
         }
+        self.sight.buffers.walk.queue = queue;
         self.sight.check_size(max_cells)
     }
 
@@ -153,25 +177,27 @@ impl Walk<'_> {
             for piece in self.hierarchy.scene.polygon(polygon).pieces() {
                 // Pieces have the same numbers as panels.
                 self.insert(piece.id().0, self.sight.contour.root);
-                self.windows.push(piece.id());
+                self.sight.buffers.walk.windows.push(piece.id());
             }
         }
-        self.windows.sort_unstable();
+        self.sight.buffers.walk.windows.sort_unstable();
     }
 
     /// Puts in a panel; piece by piece if others lie in its plane, where the numbers of polygons tell which is seen.
     fn put_in(&mut self, panel: u32, top: Link) {
         if self.insert(panel, top) == Outcome::OneByOne {
-            let mut pieces = Vec::new();
-            self.hierarchy.panels.pieces(panel, &mut pieces);
-            for piece in pieces {
+            let WalkBuffers { pieces, panels, .. } = &mut self.sight.buffers.walk;
+            let mut pieces = std::mem::take(pieces);
+            self.hierarchy.panels.pieces(panel, panels, |piece| pieces.push(piece));
+            for piece in pieces.drain(..) {
                 self.insert(piece.0, top);
             }
+            self.sight.buffers.walk.pieces = pieces;
         }
     }
 
     fn insert(&mut self, panel: u32, top: Link) -> Outcome {
-        let Self { hierarchy, sight, creases, windows, .. } = self;
+        let Self { hierarchy, sight } = self;
         let eye = sight.eye;
         let sides = hierarchy.panels.sides(panel);
         let Panel { piece: id, parts, bounds, .. } = hierarchy.panels.panel(panel);
@@ -190,6 +216,8 @@ impl Walk<'_> {
         let plane = SeenPlane::new(skeleton.approx_normal(plane), skeleton.anchor(plane), eye);
         let filler = Filler { piece: *id, near, far, plane: Some(plane) };
         let is_one = matches!(parts, Parts::One(_));
+        let Sight { contour, buffers: Buffers { work, polygon, walk, .. }, .. } = sight;
+        let WalkBuffers { creases, windows, panels, .. } = walk;
         let mut rivals = Rivals {
             hierarchy,
             eye,
@@ -197,19 +225,19 @@ impl Walk<'_> {
             sides,
             panel: (!is_one).then_some(panel),
             windows,
+            panels,
             shown,
             last: None,
             creases,
             outcome: Outcome::Done,
         };
-        let Sight { contour, buffers: Buffers { work, polygon, .. }, .. } = sight;
         let judge = |directions: &mut Directions, knife: &mut Knife, old: PieceId, part: &[PolygonArc]| {
             rivals.judge(directions, knife, old, part)
         };
         contour.insert(&hierarchy.skeleton, top, polygon, &seen, &filler, judge, work);
         let outcome = rivals.outcome;
         if !is_one {
-            self.parts.extend(self.sight.buffers.work.filled.iter().map(|&leaf| (leaf, *parts)));
+            walk.parts.extend(work.filled.iter().map(|&leaf| (leaf, *parts)));
             self.tell_apart(shown);
         }
         outcome
@@ -218,7 +246,7 @@ impl Walk<'_> {
     /// Cuts the leaves in which panels are seen along the edges between their pieces.
     fn tell_apart(&mut self, shown: Side) {
         let panels = &self.hierarchy.panels;
-        while let Some((leaf, parts)) = self.parts.pop() {
+        while let Some((leaf, parts)) = self.sight.buffers.walk.parts.pop() {
             let seam = match parts {
                 Parts::One(piece) => {
                     self.sight.contour.rename(leaf, piece);
@@ -227,7 +255,8 @@ impl Walk<'_> {
                 Parts::Two(seam) => panels.seam(seam),
             };
             let half = self.sight.along_edge(seam.side, shown);
-            let Sight { contour, buffers: Buffers { work, directions: numbers, .. }, skeleton, .. } = &mut self.sight;
+            let Sight { contour, buffers: Buffers { work, directions: numbers, walk, .. }, skeleton, .. } =
+                &mut self.sight;
             // Where the leaf reaches the panel's own boundary, the seam ends in a vertex of the scene.
             let known = |directions: &mut Directions, cache: &mut ExactCache, arc: PolygonArc| {
                 let line = directions.line(arc.along.circle())?;
@@ -238,10 +267,10 @@ impl Walk<'_> {
             let [first, second] = contour.cut_leaf(skeleton, leaf, half, known, work);
             let [one, other] = seam.halves;
             if let Some(leaf) = first {
-                self.parts.push((leaf, one));
+                walk.parts.push((leaf, one));
             }
             if let Some(leaf) = second {
-                self.parts.push((leaf, other));
+                walk.parts.push((leaf, other));
             }
         }
     }
@@ -293,6 +322,8 @@ struct Rivals<'a> {
     /// If it is a panel of several pieces.
     panel: Option<u32>,
     windows: &'a [PieceId],
+    /// Room to look for pieces of a panel.
+    panels: &'a mut Vec<u32>,
     shown: Side,
     last: Option<(PieceId, Order)>,
     creases: &'a mut FxHashMap<[PlaneId; 2], CircleId>,
@@ -318,7 +349,7 @@ impl Rivals<'_> {
     }
 
     /// By the planes of the two: what has no part before the other's plane is behind it wherever both are seen.
-    fn order(&self, old: PieceId) -> Order {
+    fn order(&mut self, old: PieceId) -> Order {
         let skeleton = &self.hierarchy.skeleton;
         let old = self.hierarchy.scene.piece(old);
         let new = self.piece;
@@ -356,11 +387,11 @@ impl Rivals<'_> {
     }
 
     /// True if a piece is one of the panel's own, that was put in before as a window: nothing else of the panel is where it is.
-    fn is_own_window(&self, panel: u32, piece: PieceId) -> bool {
+    fn is_own_window(&mut self, panel: u32, piece: PieceId) -> bool {
         self.windows.binary_search(&piece).is_ok() && {
-            let mut own = Vec::new();
-            self.hierarchy.panels.pieces(panel, &mut own);
-            own.contains(&piece)
+            let mut is_own = false;
+            self.hierarchy.panels.pieces(panel, self.panels, |own| is_own |= own == piece);
+            is_own
         }
     }
 

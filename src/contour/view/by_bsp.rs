@@ -62,8 +62,12 @@ impl SceneBsp {
 }
 
 fn walk(sight: &mut Sight<'_>, tree: &Tree, max_cells: usize) -> Result<(), ViewError> {
-    let mut stack = if tree.nodes.is_empty() { Vec::new() } else { vec![Step::Subtree(0)] };
-    let mut fragments = Vec::new();
+    let Buffers { steps, fragments, .. } = &mut sight.buffers;
+    let (mut stack, mut fragments) = (std::mem::take(steps), std::mem::take(fragments));
+    stack.clear();
+    if !tree.nodes.is_empty() {
+        stack.push(Step::Subtree(0));
+    }
     while let Some(step) = stack.pop() {
         sight.check_size(max_cells)?;
         // Leaves are open or final.
@@ -89,6 +93,8 @@ fn walk(sight: &mut Sight<'_>, tree: &Tree, max_cells: usize) -> Result<(), View
             }
         }
     }
+    sight.buffers.steps = stack;
+    sight.buffers.fragments = fragments;
     sight.check_size(max_cells)
 }
 

@@ -4,7 +4,8 @@ use super::super::CellId;
 use super::super::image::ContourImage;
 use super::super::polygon::PolygonArc;
 use super::super::tree::{ContourTree, Workspace};
-use crate::bsp::Skeleton;
+use super::by_boxes::WalkBuffers;
+use crate::bsp::{FragmentId, Skeleton, Step};
 
 /// Memory for views, used again from one to the next: have one for each thread, and pass it to
 /// [`SceneBsp::view_in`](crate::bsp::SceneBsp::view_in) or [`SceneBvh::view_in`](crate::bvh::SceneBvh::view_in). It may be used for any scenes in turn.
@@ -33,6 +34,11 @@ pub(super) struct Buffers {
     pub(super) circles: Numbers,
     pub(super) directions: Numbers,
     pub(super) polygon: Vec<PolygonArc>,
+    /// For the way by boxes.
+    pub(super) walk: WalkBuffers,
+    /// For the way by the 3D BSP.
+    pub(super) steps: Vec<Step>,
+    pub(super) fragments: Vec<FragmentId>,
 }
 
 impl ViewSpace {
@@ -50,6 +56,7 @@ impl ViewSpace {
     pub(super) fn take(&mut self, skeleton: &Skeleton) -> (Option<ContourTree>, Buffers) {
         let mut buffers = std::mem::take(&mut self.buffers);
         buffers.work.clear();
+        buffers.walk.clear();
         buffers.circles.clear(skeleton.line_count());
         buffers.directions.clear(skeleton.point_count());
         let former = self.image.take().map(|image| {

@@ -10,7 +10,7 @@ use crate::place::{PointsOf, stand};
 use crate::progress::Progress;
 use glam::DVec3;
 use nusselt::contour::SurfaceIndex;
-use nusselt::hemicube::{BaselineError, CompareError, Hemicube, Method, compare};
+use nusselt::hemicube::{CompareError, Hemicube, Method, compare};
 use nusselt::io::PointLine;
 use std::fmt::Display;
 use std::num::NonZeroUsize;
@@ -102,13 +102,10 @@ impl Compare {
         drop(progress);
         let rows = rows.map_err(|error| match &error {
             CompareError::Contour { view, source } => self.failed_at(&points[*view], source),
-            CompareError::Baseline { view, source: source @ BaselineError::EyeTooFar } => {
-                self.failed_at(&points[*view], &format!("{source}; leave them out with --rays none"))
-            }
             CompareError::Baseline { view, source } => self.failed_at(&points[*view], source),
             error => Failure::Work(error.to_string()),
         })?;
-        let report = report::Report::new(&scene, &views, self.rounds.get(), [load_s, bsp_s], &rows);
+        let report = report::Report::new(&bsp, &views, self.rounds.get(), [load_s, bsp_s], &rows);
         if common.json {
             return print_json(&report);
         }
