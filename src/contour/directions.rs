@@ -55,6 +55,22 @@ enum DirectionDef {
     Crossing { circles: [CircleId; 2], reversed: bool },
 }
 
+/// The direction from the eye to any point.
+#[derive(Clone, Debug)]
+pub(crate) struct Towards {
+    point: DVec3,
+    frame: Frame,
+    approx: Approx3,
+}
+
+impl Towards {
+    /// Of a finite point that is not the eye.
+    pub(crate) fn new(eye: DVec3, point: DVec3) -> Self {
+        let frame = Frame::new(BitRange::of([point]), eye);
+        Self { point, frame, approx: Approx3::direction(eye, point, 0.0) }
+    }
+}
+
 /// All great circles and directions of one view.
 #[derive(Clone, Debug)]
 pub(crate) struct Directions {
@@ -468,6 +484,28 @@ impl Directions {
         let mark = cache.arena.mark();
         let mut exact = Constructor { frame: &self.frame, arena: &mut cache.arena };
         let direction = exact.direction(&exact::Direction::Given(d));
+        let normal = cache.arena.numbers(&normal);
+        let sign = cache.arena.dot_sign(normal, direction);
+        cache.arena.release(mark);
+        sign
+    }
+
+    /// The same for the direction from the eye to a point that is neither the scene's nor on the grid.
+    pub(crate) fn towards_side(
+        &self,
+        skeleton: &Skeleton,
+        towards: &Towards,
+        c: CircleId,
+        cache: &mut ExactCache,
+    ) -> Sign {
+        if let Some(sign) = towards.approx.dot_sign(&self.normals[c.0 as usize]) {
+            return sign;
+        }
+        let normal = self.exact_normal(skeleton, c, cache);
+        let mark = cache.arena.mark();
+        // On a grid of its own: a multiple of the direction is as good.
+        let mut exact = Constructor { frame: &towards.frame, arena: &mut cache.arena };
+        let direction = exact.direction(&exact::Direction::Point(exact::Point::Given(towards.point)));
         let normal = cache.arena.numbers(&normal);
         let sign = cache.arena.dot_sign(normal, direction);
         cache.arena.release(mark);

@@ -70,7 +70,7 @@ pub use points::{PointLine, PointReader, open_points, parse_points, read_points}
 pub use sh::{parse_sh, read_sh, write_sh};
 #[cfg(feature = "gltf")]
 pub use shadow_glb::shadow_meshes;
-pub use svg::{DrawingCounts, DrawingOptions, Fill, SvgOptions, write_drawing, write_svg};
+pub use svg::{BrdfPicture, DrawingCounts, DrawingOptions, Fill, SvgOptions, write_brdf_svg, write_drawing, write_svg};
 pub use visible_obj::{fragment_groups, shadow_groups, visible_groups};
 
 use crate::scene::{Repair, Scene};

@@ -1,6 +1,7 @@
 //! The command line program `nusselt`.
 
 mod args;
+mod brdf;
 mod compare;
 mod contour;
 mod draw;
@@ -14,6 +15,7 @@ mod point_factors;
 mod progress;
 mod proof;
 mod radiosity;
+mod reflect;
 mod repairs;
 mod scene;
 mod shadows;
@@ -45,6 +47,7 @@ enum Command {
     Radiosity(radiosity::Radiosity),
     Draw(draw::Draw),
     Shadows(shadows::ShadowsOf),
+    Reflect(reflect::Reflect),
     Compare(compare::Compare),
     Verify(verify::Verify),
     Scene(scene::Scene),
@@ -60,6 +63,7 @@ impl Command {
             Self::Radiosity(command) => command.run(common),
             Self::Draw(command) => command.run(common),
             Self::Shadows(command) => command.run(common),
+            Self::Reflect(command) => command.run(common),
             Self::Compare(command) => command.run(common),
             Self::Verify(command) => command.run(common),
             Self::Scene(command) => command.run(common),

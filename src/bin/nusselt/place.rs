@@ -50,6 +50,20 @@ pub(crate) fn hemisphere(
     above(scene, eye, normal, surface)
 }
 
+/// On a polygon of the scene of a file, where it is nearest to the eye.
+pub(crate) fn on_polygon(
+    file: &Path,
+    scene: &Scene,
+    polygon: PolygonId,
+    side: Side,
+    eye: DVec3,
+) -> Result<Viewpoint, Failure> {
+    Viewpoint::on_surface(scene, polygon, side, eye).map_err(|error| match error {
+        SurfaceError::UnknownPolygon { .. } => Failure::Usage(format!("--on: {error}")),
+        _ => Failure::about(file, &error),
+    })
+}
+
 /// On the polygon that the point names, on the side that its normal shows; otherwise where it is meant to be: on one of the surfaces,
 /// unless there are none given.
 pub(crate) fn stand(

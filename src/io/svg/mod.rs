@@ -1,9 +1,11 @@
 //! Contour images as SVG: what is seen, in flat colours, with thin outlines.
 
+mod brdf;
 mod drawing;
 mod lines;
 pub(super) mod paint;
 
+pub use brdf::{BrdfPicture, write_brdf_svg};
 pub use drawing::{DrawingCounts, DrawingOptions, Fill, write_drawing};
 
 use crate::contour::{CellId, ContourImage, Projection, Projector};

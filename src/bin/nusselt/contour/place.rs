@@ -2,9 +2,9 @@
 
 use super::Contour;
 use crate::failure::Failure;
-use crate::place::{camera, hemisphere};
-use nusselt::contour::{Domain, Frustum, SurfaceError, Viewpoint, Windows};
-use nusselt::scene::{PolygonId, Scene, Side};
+use crate::place::{camera, hemisphere, on_polygon};
+use nusselt::contour::{Domain, Frustum, Viewpoint, Windows};
+use nusselt::scene::{PolygonId, Scene};
 
 impl Contour {
     /// What the camera sees, if there is one.
@@ -43,18 +43,11 @@ impl Contour {
 
     fn stand_without_windows(&self, scene: &Scene, camera: Option<Frustum>) -> Result<(Viewpoint, Domain), Failure> {
         if let Some((polygon, side)) = self.on {
-            return Ok((self.on_polygon(scene, polygon, side)?, Domain::Above));
+            return Ok((on_polygon(&self.scene, scene, polygon, side, self.eye)?, Domain::Above));
         }
         let Some(normal) = self.normal else {
             return Ok((Viewpoint::free(self.eye), camera.map_or(Domain::Sphere, Domain::Frustum)));
         };
         hemisphere(scene, self.eye, normal, self.free).map_err(|error| Failure::about(&self.scene, &error))
-    }
-
-    fn on_polygon(&self, scene: &Scene, polygon: PolygonId, side: Side) -> Result<Viewpoint, Failure> {
-        Viewpoint::on_surface(scene, polygon, side, self.eye).map_err(|error| match error {
-            SurfaceError::UnknownPolygon { .. } => Failure::Usage(format!("--on: {error}")),
-            _ => Failure::about(&self.scene, &error),
-        })
     }
 }
