@@ -32,7 +32,9 @@
 //! | [`integral`] | solid angles and form factors of cells; moments and cubature over spherical polygons |
 //! | [`brdf`] | reflection: BRDFs, and the radiance reflected from what is seen |
 //! | [`factors`] | form factors from points, and between patches: the matrix, row by row |
+//! | [`radiosity`] | diffuse interreflection: progressive refinement, and radiosities of points |
 //! | [`hemicube`] | baselines to compare with: the hemicube, with analytic form factors too, and rays |
+//! | [`picture`] | pictures in pixels, by exact areas |
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
 //! | [`io`] | reading scenes, writing results |
 //! | `testing` | with the feature of that name: strategies, degenerate scenes and checks for property tests |
@@ -50,6 +52,8 @@ pub mod hemicube;
 pub mod integral;
 pub mod io;
 mod parallel;
+pub mod picture;
+pub mod radiosity;
 pub mod samples;
 pub mod scene;
 #[cfg(feature = "testing")]

@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 use nusselt::io::{self, Loaded, ReadError, ReadOptions, gltf};
-use nusselt::scene::{Material, PolygonId, Scene};
+use nusselt::scene::{Material, MetallicRoughness, PolygonId, Scene};
 use serde_json::{Value, json};
 use std::fs;
 
@@ -228,11 +228,11 @@ fn quantised_positions_are_numbers_or_fractions() {
 }
 
 #[test]
-fn materials_have_base_colour_and_emission() {
+fn materials_have_base_colour_metal_roughness_and_emission() {
     let mut file = square();
     file["materials"] = json!([
         { "name": "unused" },
-        { "name": "lamp", "pbrMetallicRoughness": { "baseColorFactor": [0.1, 0.2, 0.3, 0.5], "metallicFactor": 1 },
+        { "name": "lamp", "pbrMetallicRoughness": { "baseColorFactor": [0.1, 0.2, 0.3, 0.5], "metallicFactor": 0.5, "roughnessFactor": 0.25 },
           "emissiveFactor": [1, 0.5, 0], "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 10 } } },
         { "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }
     ]);
@@ -245,8 +245,11 @@ fn materials_have_base_colour_and_emission() {
     assert_eq!(names, ["lamp", "default", "material_2"]);
     let mut lamp = Material::new("lamp");
     (lamp.diffuse, lamp.emission) = ([0.1, 0.2, 0.3], [10.0, 5.0, 0.0]);
+    let surface = |base_colour, metallic, roughness| Some(MetallicRoughness { base_colour, metallic, roughness });
+    lamp.metallic_roughness = surface([0.1, 0.2, 0.3], 0.5, 0.25);
     let mut white = Material::new("material_2");
     white.diffuse = [1.0; 3];
+    white.metallic_roughness = surface([1.0; 3], 1.0, 1.0);
     assert_eq!(materials, [lamp, Material::new("default"), white]);
     assert_eq!(
         loaded.warnings,

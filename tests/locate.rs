@@ -119,12 +119,15 @@ impl Cells {
 
     /// What `locate` should say.
     fn locate(&self, direction: DVec3) -> Location {
-        let direction = exact(direction);
+        self.locate_exactly(&exact(direction))
+    }
+
+    fn locate_exactly(&self, direction: &Vector) -> Location {
         let places: BTreeMap<CellId, Place> = (0..self.normals.len())
-            .filter_map(|k| self.place(k, &direction).map(|place| (CellId(k as u32), place)))
+            .filter_map(|k| self.place(k, direction).map(|place| (CellId(k as u32), place)))
             .collect();
         let of = |wanted| places.iter().filter(move |(_, place)| **place == wanted).map(|(&cell, _)| cell);
-        let height = self.horizon.as_ref().map(|normal| dot(normal, &direction));
+        let height = self.horizon.as_ref().map(|normal| dot(normal, direction));
         let is_rim = height.as_ref().is_some_and(Zero::is_zero);
         if height.is_some_and(|h| h.is_negative()) {
             assert!(places.is_empty(), "cells {places:?} below the horizon");
@@ -279,6 +282,33 @@ fn no_length_and_no_ratio_is_too_large() {
         let Location::Cell(cell) = seen(z) else { panic!("no cell") };
         assert_eq!(image.cell(cell).polygon().is_some(), polygon);
     }
+}
+
+#[test]
+fn points_are_located_in_their_exact_directions() {
+    let mut faces = Faces::default();
+    faces.face(&[[2.0, -1.0, -1.0], [2.0, 1.0, -1.0], [2.0, 1.0, 1.0], [2.0, -1.0, 1.0]].map(DVec3::from));
+    faces.face(&[[3.0, -4.1, -1.3], [3.3, 4.7, -1.9], [3.7, 1.1, 5.3]].map(DVec3::from));
+    let eye = DVec3::new(0.1, 0.7, 0.3);
+    let image = view(&faces.build(), eye, &Domain::Sphere, 1);
+    let cells = Cells::of(&image);
+    let (mut inside, mut between, mut rounded) = (0, 0, 0);
+    let vertices = image.scene().vertices().to_vec();
+    let middles = vertices.iter().flat_map(|&a| vertices.iter().map(move |&b| a * 0.5 + b * 0.5));
+    let near = |p: DVec3| [p, DVec3::new(p.x.next_up(), p.y, p.z), DVec3::new(p.x, p.y, p.z.next_down()), p * 1e-200];
+    for point in middles.flat_map(near) {
+        let location = image.locate_point(point);
+        assert_eq!(location, cells.locate_exactly(&minus(&exact(point), &exact(eye))), "{point:?}");
+        match location {
+            Location::Cell(_) => inside += 1,
+            _ => between += 1,
+        }
+        rounded += u32::from(image.locate(point - eye) != location);
+    }
+    assert!(inside > 10 && between > 10, "{inside} {between}");
+    assert!(rounded > 0, "rounding the difference is as good");
+    assert_eq!(image.locate_point(eye), Location::Outside);
+    assert_eq!(image.locate_point(DVec3::NAN), Location::Outside);
 }
 
 #[test]

@@ -75,6 +75,7 @@ fn materials_come_from_libraries_with_blanks_in_their_names() {
         exponent: 12.0,
         emission: [1.0, 2.0, 300.0],
         name: "lamp".into(),
+        metallic_roughness: None,
     };
     assert_eq!(materials[1], lamp);
     assert_eq!(materials[2], Material::new("two"));

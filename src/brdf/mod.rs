@@ -27,6 +27,7 @@
 
 mod ashikhmin;
 mod blinn;
+mod emission;
 mod error;
 mod form;
 mod frame;
@@ -35,14 +36,19 @@ mod ggx;
 mod halfway;
 mod lafortune;
 mod lambert;
+mod lights;
 mod ltc;
+mod material;
 mod merl;
+mod metallic_roughness;
 mod mirror;
 mod oren_nayar;
 mod phong;
 mod reflect;
 mod reflected;
+mod seen;
 mod sh;
+mod sky;
 mod sum;
 mod ward;
 
@@ -51,26 +57,32 @@ mod tests;
 
 pub use ashikhmin::AshikhminShirley;
 pub use blinn::Blinn;
+pub use emission::{Emission, emitted, emitted_by_both_sides};
 pub use error::BrdfError;
 pub use form::{Form, Lobe};
 pub use fresnel::Fresnel;
 pub use ggx::Ggx;
 pub use lafortune::Lafortune;
 pub use lambert::Lambert;
+pub use lights::{Light, Lighting};
 pub use ltc::{GgxLtc, LtcFit, LtcTable};
 pub(crate) use merl::{BINS as MERL_BINS, COUNT as MERL_COUNT, bin as merl_bin};
 pub use merl::{Merl, Unmeasured};
+pub use metallic_roughness::MetallicRoughness;
 pub use mirror::Mirror;
 pub use oren_nayar::OrenNayar;
 pub use phong::Phong;
-pub use reflected::{ReflectError, emitted, reflected_radiance};
+pub(crate) use reflected::Place;
+pub use reflected::{ReflectError, albedo_towards, reflected_radiance};
 pub(crate) use sh::is_usable;
 pub use sh::{ShBrdf, ShProjection, ShSymmetry};
+pub use sky::{Sky, SkyError};
 pub use sum::Sum;
 pub use ward::Ward;
 
 use crate::integral::CubatureOptions;
 use glam::DVec3;
+use std::sync::Arc;
 
 /// Three numbers (red, green, blue), and what each may be off by.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -102,6 +114,25 @@ pub trait Brdf: Send + Sync {
     fn albedo(&self, outgoing: DVec3) -> RgbEstimate {
         let options = CubatureOptions { relative: 1e-8, absolute: 1e-12, evaluations: 1_000_000 };
         reflect::white_furnace(self.form(outgoing), &|incoming| self.eval(incoming, outgoing), outgoing, options)
+    }
+}
+
+/// A BRDF that several owners share.
+impl<B: Brdf + ?Sized> Brdf for Arc<B> {
+    fn eval(&self, incoming: DVec3, outgoing: DVec3) -> DVec3 {
+        (**self).eval(incoming, outgoing)
+    }
+
+    fn form(&self, outgoing: DVec3) -> Form<'_> {
+        (**self).form(outgoing)
+    }
+
+    fn is_reciprocal(&self) -> bool {
+        (**self).is_reciprocal()
+    }
+
+    fn albedo(&self, outgoing: DVec3) -> RgbEstimate {
+        (**self).albedo(outgoing)
     }
 }
 

@@ -1,9 +1,10 @@
 //! Integrals of BRDF times cosine times radiance over convex spherical polygons, each form in its own way.
 
+use super::seen::Seen;
 use super::{Form, Lobe, RgbEstimate};
 use crate::integral::{
-    Cubature, CubatureOptions, Harmonics, Peak, Smoothness, ZonalSum, clip, double_axis_moment, form_factor, perimeter,
-    unit_outline,
+    Cubature, CubatureOptions, Harmonics, Peak, Receiver, Smoothness, Weight, ZonalSum, clip, double_axis_moment,
+    form_factor, perimeter, unit_outline,
 };
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -31,11 +32,22 @@ pub(super) struct Lit {
     radiance: DVec3,
 }
 
+/// What of a polygon is above the horizon; `None` if nothing is.
+pub(super) fn above_horizon(boundary: &[DVec3]) -> Option<Vec<DVec3>> {
+    // Most are outlines as they are: unit vectors but for rounding.
+    let next = boundary.iter().cycle().skip(1);
+    let is_outline = boundary.iter().zip(next).all(|(a, b)| a.z > 0.0 && a != b && a.dot(*b) >= 0.0);
+    if is_outline && boundary.len() > 2 {
+        return Some(boundary.to_vec());
+    }
+    let outline = clip(&unit_outline(boundary), DVec3::Z);
+    (outline.len() > 2).then_some(outline)
+}
+
 impl Lit {
     /// What of a polygon is above the horizon; `None` if nothing is.
     pub(super) fn new(boundary: &[DVec3], radiance: DVec3) -> Option<Self> {
-        let outline = clip(&unit_outline(boundary), DVec3::Z);
-        (outline.len() > 2).then_some(Self { outline, radiance })
+        Some(Self { outline: above_horizon(boundary)?, radiance })
     }
 
     /// No direction of it has a larger cosine to an axis.
@@ -89,20 +101,88 @@ pub(super) fn reflect(
             sum
         }
         Form::General { peaks, creases, smoothness } => {
-            by_cubature(eval, (&peaks, &creases, smoothness), surroundings.lit, options)
+            by_cubature(eval, (&peaks, &creases, smoothness), constant(surroundings.lit), options)
         }
     }
+}
+
+/// The same from what varies. A mirror looks it up with the rest.
+pub(super) fn reflect_varying(
+    form: Form<'_>,
+    eval: &dyn Fn(DVec3) -> DVec3,
+    outgoing: DVec3,
+    seen: &Seen,
+    options: CubatureOptions,
+) -> RgbEstimate {
+    match form {
+        Form::Dirac { .. } => RgbEstimate::default(),
+        Form::Sum(parts) => {
+            let mut sum = RgbEstimate::default();
+            for part in parts {
+                let eval = |incoming| part.eval(incoming, outgoing);
+                sum += reflect_varying(part.form(outgoing), &eval, outgoing, seen, options);
+            }
+            sum
+        }
+        Form::Lobes(lobes) => {
+            let peaks: Vec<Peak> = lobes.iter().filter(|lobe| lobe.power > 0).map(Lobe::peak).collect();
+            let creases: Vec<DVec3> = peaks.iter().map(|peak| peak.axis).collect();
+            varying_by_cubature(seen, eval, (&peaks, &creases, Smoothness::Smooth), options)
+        }
+        Form::Harmonics(series) => {
+            let waves = Smoothness::Waves { band: series.band().saturating_add(1) };
+            varying_by_cubature(seen, eval, (&[], &[], waves), options)
+        }
+        Form::Transformed { inverse, distance, .. } => {
+            // The lobe is about what is turned to z, and not narrower than this.
+            let axis = inverse.inverse() * DVec3::Z;
+            let narrowest = 1.0 / (frobenius(inverse) * axis.length());
+            let peaks = [Peak { axis, width: narrowest.min(1.0) }];
+            let mut sum = varying_by_cubature(seen, eval, (&peaks, &[], Smoothness::Smooth), options);
+            let most = seen.linear.iter().map(|(_, linear)| linear.most());
+            let most = most.chain(seen.skies.iter().map(|(sky, _)| sky.most()));
+            sum.error += distance * most.fold(DVec3::ZERO, DVec3::max);
+            sum
+        }
+        Form::General { peaks, creases, smoothness } => {
+            varying_by_cubature(seen, eval, (&peaks, &creases, smoothness), options)
+        }
+    }
+}
+
+fn varying_by_cubature(
+    seen: &Seen,
+    eval: &dyn Fn(DVec3) -> DVec3,
+    (peaks, creases, smoothness): Shape<'_>,
+    options: CubatureOptions,
+) -> RgbEstimate {
+    let mut sum = RgbEstimate::default();
+    if !seen.linear.is_empty() {
+        let parts = seen.linear.iter().map(|(outline, linear)| (&outline[..], Weight::Linear(*linear)));
+        sum += by_cubature(eval, (peaks, creases, smoothness), parts, options);
+    }
+    for (sky, outlines) in &seen.skies {
+        let peaks: Vec<Peak> = peaks.iter().copied().chain(sky.peak()).collect();
+        let product = |incoming| eval(incoming) * sky.radiance(incoming);
+        let parts = outlines.iter().map(|outline| (&outline[..], Weight::Constant(DVec3::ONE)));
+        sum += by_cubature(&product, (&peaks, creases, smoothness), parts, options);
+    }
+    sum
 }
 
 /// By moments; by cubature where the bound on their error, which is absolute, is more than what is allowed and than cubature's.
 fn of_lobe(lobe: &Lobe, lit: &[Lit], options: CubatureOptions) -> RgbEstimate {
     let mut sum = RgbEstimate::default();
+    let receiver = Receiver::new(DVec3::Z);
+    let mut corners = Vec::new();
     for part in lit {
         let (value, error) = if lobe.power == 0 {
-            let factor = form_factor(&part.outline, DVec3::Z);
-            // As it states, and for corners rounded to units of f64.
-            let rim = perimeter(&part.outline);
-            (PI * factor, 2e-16 * PI * (factor + rim * rim.min(PI)) + 2.0 * f64::EPSILON * rim)
+            let factor = receiver.factor_of(part.outline.iter().copied(), &mut corners);
+            // No arc is longer than 90 degrees, nor 1.12 times its chord.
+            let rim: f64 = corners.windows(2).map(|ends| 1.12 * ends[0].distance(ends[1])).sum();
+            // As both ways to compute it are off at most (docs/integrals.md), and for corners rounded to units of f64.
+            let error = 4e-16 * PI * (factor + rim * rim.min(PI)) + 3.0 * f64::EPSILON * rim;
+            (PI * factor, error)
         } else {
             // Of the lobe's tail a bound is enough.
             let bound = TAU * part.largest_cosine(lobe.axis).max(0.0).powi(i32::from(lobe.power));
@@ -119,8 +199,8 @@ fn of_lobe(lobe: &Lobe, lit: &[Lit], options: CubatureOptions) -> RgbEstimate {
     if lobe.power == 0 || sum.error.max_element() <= allowed {
         return sum;
     }
-    let other =
-        by_cubature(&|incoming| lobe.eval(incoming), (&[lobe.peak()], &[lobe.axis], Smoothness::Smooth), lit, options);
+    let shape: Shape<'_> = (&[lobe.peak()], &[lobe.axis], Smoothness::Smooth);
+    let other = by_cubature(&|incoming| lobe.eval(incoming), shape, constant(lit), options);
     if other.error.max_element() < sum.error.max_element() { other } else { sum }
 }
 
@@ -143,7 +223,7 @@ fn of_harmonics(series: &Harmonics, lit: &[Lit], options: CubatureOptions) -> Rg
         closed = Some(sum);
     }
     let waves = Smoothness::Waves { band: series.band().saturating_add(1) };
-    let other = by_cubature(&|incoming| series.eval(incoming), (&[], &[], waves), lit, options);
+    let other = by_cubature(&|incoming| series.eval(incoming), (&[], &[], waves), constant(lit), options);
     closed.filter(|closed| closed.error.max_element() <= other.error.max_element()).unwrap_or(other)
 }
 
@@ -152,8 +232,7 @@ fn of_harmonics(series: &Harmonics, lit: &[Lit], options: CubatureOptions) -> Rg
 /// Polygons do not overlap, so the distance to what the cosine stands for counts once, with the brightest of them.
 fn of_transformed_cosine(inverse: DMat3, weight: DVec3, distance: DVec3, lit: &[Lit]) -> RgbEstimate {
     // By how much a turn of a direction, such as a corner's rounding, may grow.
-    let largest = |m: DMat3| m.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt();
-    let growth = largest(inverse) * largest(inverse.inverse());
+    let growth = frobenius(inverse) * frobenius(inverse.inverse());
     let mut sum = RgbEstimate::default();
     let mut brightest = DVec3::ZERO;
     for part in lit {
@@ -169,20 +248,33 @@ fn of_transformed_cosine(inverse: DMat3, weight: DVec3, distance: DVec3, lit: &[
     sum
 }
 
-fn by_cubature(
+/// A bound on how much a matrix stretches.
+fn frobenius(m: DMat3) -> f64 {
+    m.to_cols_array().iter().map(|v| v * v).sum::<f64>().sqrt()
+}
+
+/// Where a function is large, normals of great circles at which it has kinks, and whether it has others.
+type Shape<'a> = (&'a [Peak], &'a [DVec3], Smoothness);
+
+/// Polygons with what they are weighted by.
+fn constant(lit: &[Lit]) -> impl Iterator<Item = (&[DVec3], Weight)> {
+    lit.iter().map(|part| (&part.outline[..], Weight::Constant(part.radiance)))
+}
+
+fn by_cubature<'a>(
     eval: &dyn Fn(DVec3) -> DVec3,
-    (peaks, creases, smoothness): (&[Peak], &[DVec3], Smoothness),
-    lit: &[Lit],
+    (peaks, creases, smoothness): Shape<'_>,
+    parts: impl Iterator<Item = (&'a [DVec3], Weight)>,
     options: CubatureOptions,
 ) -> RgbEstimate {
     let mut cubature = Cubature::new(|incoming: DVec3| eval(incoming) * incoming.z.max(0.0), peaks, smoothness);
-    for part in lit {
-        let mut outlines = vec![part.outline.clone()];
+    for (outline, weight) in parts {
+        let mut outlines = vec![outline.to_vec()];
         for &crease in creases {
             outlines = outlines.iter().flat_map(|outline| [clip(outline, crease), clip(outline, -crease)]).collect();
         }
         for outline in &outlines {
-            cubature.add(outline, part.radiance);
+            cubature.add_weighted(outline, weight);
         }
     }
     let integral = cubature.run(options);

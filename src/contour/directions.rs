@@ -38,6 +38,13 @@ pub(crate) struct LooseDirection {
     approx: Approx3,
 }
 
+impl LooseDirection {
+    /// As a unit vector.
+    pub(crate) fn unit(&self) -> DVec3 {
+        self.approx.v.normalize_or_zero()
+    }
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum DirectionDef {
     /// From the eye to a point.
@@ -46,6 +53,22 @@ enum DirectionDef {
     Towards(DVec3),
     /// `n_1 x n_2`, or its opposite.
     Crossing { circles: [CircleId; 2], reversed: bool },
+}
+
+/// The direction from the eye to any point.
+#[derive(Clone, Debug)]
+pub(crate) struct Towards {
+    point: DVec3,
+    frame: Frame,
+    approx: Approx3,
+}
+
+impl Towards {
+    /// Of a finite point that is not the eye.
+    pub(crate) fn new(eye: DVec3, point: DVec3) -> Self {
+        let frame = Frame::new(BitRange::of([point]), eye);
+        Self { point, frame, approx: Approx3::direction(eye, point, 0.0) }
+    }
 }
 
 /// All great circles and directions of one view.
@@ -399,6 +422,59 @@ impl Directions {
         x
     }
 
+    /// Whether the normals of two names of one great circle point the same way.
+    pub(crate) fn same_way(&self, skeleton: &Skeleton, a: CircleId, b: CircleId, cache: &mut ExactCache) -> Sign {
+        if a == b {
+            return Sign::Positive;
+        }
+        let [a, b] = [a, b].map(|circle| self.exact_normal(skeleton, circle, cache));
+        cache.arena.kept_dot_sign(&a, &b)
+    }
+
+    /// The point of the scene, or one that the 3D BSP made, that a direction leads to, if it was made for one.
+    pub(crate) fn point(&self, d: DirectionId) -> Option<PointId> {
+        match self.definitions[d.0 as usize] {
+            DirectionDef::Point(point) => Some(point),
+            DirectionDef::Towards(_) | DirectionDef::Crossing { .. } => None,
+        }
+    }
+
+    /// Where the ray in a direction meets a plane that it does meet, rounded.
+    pub(crate) fn point_on_plane(
+        &self,
+        skeleton: &Skeleton,
+        d: DirectionId,
+        plane: PlaneId,
+        cache: &mut ExactCache,
+    ) -> DVec3 {
+        let [x, m, n] = match self.definitions[d.0 as usize] {
+            DirectionDef::Point(point) => [Some(self.exact_point(skeleton, point, cache)), None, None],
+            DirectionDef::Towards(point) => [Some(self.exact_towards(point, cache)), None, None],
+            DirectionDef::Crossing { circles: [m, n], reversed } => {
+                let [m, n] = if reversed { [n, m] } else { [m, n] };
+                [None, Some(self.exact_normal(skeleton, m, cache)), Some(self.exact_normal(skeleton, n, cache))]
+            }
+        };
+        let arena = &mut cache.arena;
+        let mark = arena.mark();
+        let direction = match (x, m, n) {
+            (None, Some(m), Some(n)) => {
+                let [m, n] = [m, n].map(|normal| arena.numbers(&normal));
+                arena.cross(m, n)
+            }
+            (Some(x), ..) => arena.numbers(&x),
+            _ => unreachable!("a direction is a point or a crossing"),
+        };
+        let (normal, height) = Constructor { frame: &self.frame, arena }.plane(&skeleton.resolved_plane(plane));
+        // normal . (s x) = -height.
+        let along = arena.dot(normal, direction);
+        let sign = along.sign();
+        let point = arena.scale3(height.negated().times_sign(sign), direction);
+        let (position, _) = self.frame.position(arena, point, along.times_sign(sign));
+        arena.release(mark);
+        position
+    }
+
     /// On which side of the great circle a direction given by three numbers lies, exactly.
     pub(crate) fn given_side(&self, skeleton: &Skeleton, d: DVec3, c: CircleId, cache: &mut ExactCache) -> Sign {
         if let Some(sign) = Approx3::given(d).dot_sign(&self.normals[c.0 as usize]) {
@@ -408,6 +484,28 @@ impl Directions {
         let mark = cache.arena.mark();
         let mut exact = Constructor { frame: &self.frame, arena: &mut cache.arena };
         let direction = exact.direction(&exact::Direction::Given(d));
+        let normal = cache.arena.numbers(&normal);
+        let sign = cache.arena.dot_sign(normal, direction);
+        cache.arena.release(mark);
+        sign
+    }
+
+    /// The same for the direction from the eye to a point that is neither the scene's nor on the grid.
+    pub(crate) fn towards_side(
+        &self,
+        skeleton: &Skeleton,
+        towards: &Towards,
+        c: CircleId,
+        cache: &mut ExactCache,
+    ) -> Sign {
+        if let Some(sign) = towards.approx.dot_sign(&self.normals[c.0 as usize]) {
+            return sign;
+        }
+        let normal = self.exact_normal(skeleton, c, cache);
+        let mark = cache.arena.mark();
+        // On a grid of its own: a multiple of the direction is as good.
+        let mut exact = Constructor { frame: &towards.frame, arena: &mut cache.arena };
+        let direction = exact.direction(&exact::Direction::Point(exact::Point::Given(towards.point)));
         let normal = cache.arena.numbers(&normal);
         let sign = cache.arena.dot_sign(normal, direction);
         cache.arena.release(mark);

@@ -152,6 +152,13 @@ impl ContourImage {
         self.tree.directions.approximations().iter().map(|direction| direction.v)
     }
 
+    /// True if the plane of a piece separates a point from the eye: if both are strictly on different sides of it.
+    pub(crate) fn is_behind(&self, piece: PieceId, point: DVec3) -> bool {
+        let plane = self.scene().piece(piece).plane_id();
+        let [eye, other] = [self.viewpoint.eye(), point].map(|p| self.skeleton().position_side(plane, p));
+        eye * other == Sign::Negative
+    }
+
     pub(super) fn root(&self) -> Link {
         self.tree.root
     }

@@ -1,6 +1,6 @@
 //! Exact point location: which cells a direction lies in, or between.
 
-use super::directions::ExactCache;
+use super::directions::{CircleId, ExactCache, Towards};
 use super::image::{CellId, ContourImage};
 use super::tree::Link;
 use crate::exact::Sign;
@@ -83,7 +83,21 @@ impl ContourImage {
         if !direction.is_finite() || direction == DVec3::ZERO {
             return Location::Outside;
         }
-        let skeleton = self.skeleton();
+        self.locate_by(|circle, cache| self.tree.directions.given_side(self.skeleton(), direction, circle, cache))
+    }
+
+    /// The same for the direction from the eye to a point: the exact one, which rounding the difference may miss. `Outside` if the
+    /// point is not finite, or the eye itself.
+    pub fn locate_point(&self, point: DVec3) -> Location {
+        if !point.is_finite() || point == self.viewpoint().eye() {
+            return Location::Outside;
+        }
+        let towards = Towards::new(self.viewpoint().eye(), point);
+        self.locate_by(|circle, cache| self.tree.directions.towards_side(self.skeleton(), &towards, circle, cache))
+    }
+
+    /// Finds a direction by the sides of great circles that it lies on.
+    fn locate_by(&self, side: impl Fn(CircleId, &mut ExactCache) -> Sign) -> Location {
         let mut cache = ExactCache::default();
         let mut stack = vec![self.root()];
         let mut is_on_splitter = false;
@@ -94,7 +108,7 @@ impl ContourImage {
             match link {
                 Link::Node(node) => {
                     let node = &self.tree.nodes[node as usize];
-                    match self.tree.directions.given_side(skeleton, direction, node.circle, &mut cache) {
+                    match side(node.circle, &mut cache) {
                         Sign::Negative => stack.push(node.negative()),
                         Sign::Positive => stack.push(node.positive()),
                         Sign::Zero => {
@@ -106,7 +120,7 @@ impl ContourImage {
                 Link::Leaf(leaf) => match self.cell_of_leaf[leaf as usize] {
                     None => is_rim = true,
                     Some(cell) if !is_on_splitter => return Location::Cell(cell),
-                    Some(cell) if self.is_corner(leaf, direction, &mut cache) => corners.push(cell),
+                    Some(cell) if self.is_corner(leaf, &side, &mut cache) => corners.push(cell),
                     Some(cell) => sides.push(cell),
                 },
             }
@@ -123,14 +137,19 @@ impl ContourImage {
     }
 
     /// True if a direction on the boundary of a leaf is where it turns.
-    fn is_corner(&self, leaf: u32, direction: DVec3, cache: &mut ExactCache) -> bool {
+    fn is_corner(
+        &self,
+        leaf: u32,
+        side_of: &impl Fn(CircleId, &mut ExactCache) -> Sign,
+        cache: &mut ExactCache,
+    ) -> bool {
         let skeleton = self.skeleton();
         let directions = &self.tree.directions;
         let arcs = self.tree.boundary(leaf);
         let mut first = None;
         for (k, arc) in arcs.iter().enumerate() {
             let circle = arc.along.circle();
-            let side = directions.given_side(skeleton, direction, circle, cache) * arc.along.inside();
+            let side = side_of(circle, cache) * arc.along.inside();
             debug_assert_ne!(side, Sign::Negative, "the closure of a leaf that is reached holds the direction");
             if !side.is_zero() {
                 continue;

@@ -8,6 +8,7 @@
 mod certify;
 mod directions;
 mod domain;
+mod edges;
 mod frustum;
 #[cfg(feature = "geo")]
 mod geo;
@@ -19,6 +20,7 @@ mod polygon;
 mod precise;
 mod projection;
 mod regions;
+mod shadows;
 mod subdivision;
 mod surfaces;
 mod tree;
@@ -31,6 +33,7 @@ mod tests;
 
 pub use crate::scene::Splitter;
 pub use domain::Domain;
+pub use edges::{EdgeStretch, EdgeTracer};
 pub use frustum::{Frustum, FrustumError};
 #[cfg(feature = "geo")]
 pub use geo::GeoRegion;
@@ -41,6 +44,7 @@ pub use order::SceneOrder;
 pub(crate) use precise::Precise;
 pub use projection::{FlatRegion, Projection, ProjectionError, Projector, ViewFrame, Window};
 pub use regions::{RegionLoop, RegionSide, VisibleRegion};
+pub use shadows::{ShadowPart, Shadows};
 pub use subdivision::{Quadtree, Spacing};
 pub use surfaces::SurfaceIndex;
 pub use view::{ViewError, ViewOptions, ViewSpace, ViewSpaces, ViewStats, ViewsError};

@@ -1,6 +1,7 @@
 //! The contour tree: a 2D BSP on the sphere of directions.
 
 mod claim;
+pub(crate) mod divide;
 
 use super::directions::{CircleId, DirectionId, Directions, ExactCache};
 use super::polygon::{HalfSphere, Knife, PolygonArc, Sides, Span};

@@ -107,11 +107,11 @@ fn default_depth(polygons: usize, domain: &Domain) -> u32 {
 }
 
 /// A view that is being made.
-struct Sight<'a> {
-    skeleton: &'a Skeleton,
-    eye: DVec3,
-    contour: ContourTree,
-    buffers: Buffers,
+pub(super) struct Sight<'a> {
+    pub(super) skeleton: &'a Skeleton,
+    pub(super) eye: DVec3,
+    pub(super) contour: ContourTree,
+    pub(super) buffers: Buffers,
     stats: ViewStats,
 }
 
@@ -165,7 +165,7 @@ impl<'a> Sight<'a> {
     }
 
     /// Makes `polygon` the cone of a boundary on the plane of a piece, of which the eye is shown that side.
-    fn look_at(&mut self, piece: PieceRef<'_>, sides: &[FragmentSide], shown: Side) {
+    pub(super) fn look_at(&mut self, piece: PieceRef<'_>, sides: &[FragmentSide], shown: Side) {
         self.buffers.polygon.clear();
         for k in 0..sides.len() {
             // Counter-clockwise around the front is clockwise on the sphere, seen from outside of it,

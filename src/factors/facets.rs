@@ -95,7 +95,7 @@ fn inverse_power_of_two(x: f64) -> f64 {
 }
 
 /// The corners of a convex ring that span the largest triangle with its first edge's start, in their order.
-fn spanning(ring: &[DVec3]) -> [DVec3; 3] {
+pub(super) fn spanning(ring: &[DVec3]) -> [DVec3; 3] {
     let area = |a: usize, b: usize| (ring[a] - ring[0]).cross(ring[b] - ring[0]).length_squared();
     let pairs = (1..ring.len()).flat_map(|a| (a + 1..ring.len()).map(move |b| (a, b)));
     let best = pairs.max_by(|&(a, b), &(c, d)| area(a, b).total_cmp(&area(c, d)));

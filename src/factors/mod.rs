@@ -17,6 +17,7 @@ mod exchange;
 mod facets;
 mod hidden;
 mod mesh;
+mod meshed;
 mod options;
 mod pair;
 mod points;
@@ -29,6 +30,7 @@ mod tree;
 
 pub use error::ExchangeError;
 pub use exchange::Exchange;
+pub use meshed::mesh_scene;
 pub use options::{ExchangeOptions, PatchPlan, Sides};
 pub use points::{By, PointError, PointFactors, PointSolver, PointsError};
 pub use reciprocity::{Reciprocal, ReciprocityError, make_reciprocal};

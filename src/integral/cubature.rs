@@ -16,6 +16,7 @@
 //! known: if it is more than was estimated, the halves' estimates are raised in proportion.
 
 mod rule;
+mod weight;
 
 use super::clip::unit_outline;
 use super::flux::double_flux;
@@ -24,6 +25,8 @@ use glam::DVec3;
 use rule::{POINTS, Rule};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+
+pub(crate) use weight::{Linear, Weight};
 
 #[cfg(test)]
 mod tests;
@@ -136,6 +139,11 @@ impl<F: Fn(DVec3) -> DVec3> Cubature<F> {
 
     /// Adds a convex polygon, over which the function is multiplied by `weight`, component by component.
     pub fn add(&mut self, boundary: &[DVec3], weight: DVec3) {
+        self.add_weighted(boundary, Weight::Constant(weight));
+    }
+
+    /// The same with a weight that may vary.
+    pub(crate) fn add_weighted(&mut self, boundary: &[DVec3], weight: Weight) {
         let outline = unit_outline(boundary);
         let Some(first) = outline.first().copied() else { return };
         // About the middle, as solid angles are: it is in the polygon, of a hemisphere and of a sliver too.
@@ -218,7 +226,7 @@ impl<F: Fn(DVec3) -> DVec3> Cubature<F> {
     }
 
     /// A triangle with its integral; `None` if it has no area.
-    fn part(&mut self, corners: [DVec3; 3], weight: DVec3) -> Option<Part> {
+    fn part(&mut self, corners: [DVec3; 3], weight: Weight) -> Option<Part> {
         let [a, b, c] = corners;
         let determinant = a.dot((b - a).cross(c - a));
         if determinant <= 0.0 {
@@ -230,7 +238,8 @@ impl<F: Fn(DVec3) -> DVec3> Cubature<F> {
         for (value, [s, t]) in values.iter_mut().zip(rule.points) {
             let p = a + (b - a) * s + (c - a) * t;
             let length = p.length();
-            *value = (self.f)(p / length) * (weight / (length * length * length));
+            let direction = p / length;
+            *value = (self.f)(direction) * (weight.at(direction) / (length * length * length));
         }
         let area = 0.5 * determinant;
         let (mean, error) = rule.apply(&values, self.smoothness);
@@ -267,7 +276,7 @@ fn halves(corners: [DVec3; 3]) -> [[DVec3; 3]; 2] {
 /// A triangle with its integral.
 struct Part {
     corners: [DVec3; 3],
-    weight: DVec3,
+    weight: Weight,
     value: DVec3,
     error: DVec3,
     /// By how much estimates here were raised.

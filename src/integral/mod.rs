@@ -11,6 +11,7 @@ mod clip;
 mod cubature;
 mod flux;
 mod form_factor;
+mod gradient;
 mod harmonics;
 mod moments;
 mod precise;
@@ -27,7 +28,9 @@ mod tests;
 
 pub(crate) use clip::{clip, perimeter, unit_outline};
 pub use cubature::{Cubature, CubatureOptions, Integral, Peak, Smoothness, integrate};
+pub(crate) use cubature::{Linear, Weight};
 pub use form_factor::{form_factor, form_factor_of_units};
+pub use gradient::{GradientError, IrradianceGradient};
 pub use harmonics::{Harmonics, harmonics};
 pub(crate) use harmonics::{count as harmonic_count, index as harmonic_index};
 pub use moments::{Estimate, axial_moment, double_axis_moment};

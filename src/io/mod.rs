@@ -33,10 +33,17 @@ pub mod obj;
 #[cfg(feature = "parquet")]
 mod parquet;
 pub mod ply;
+#[cfg(feature = "png")]
+mod png;
 mod point_factors;
 mod points;
 mod quoted;
+#[cfg(all(feature = "gltf", feature = "json"))]
+pub mod radiosity;
 mod sh;
+#[cfg(feature = "gltf")]
+mod shadow_glb;
+mod srgb;
 pub mod stl;
 mod svg;
 #[cfg(any(feature = "cityjson", feature = "gltf", feature = "json"))]
@@ -56,11 +63,15 @@ pub use error::{Fault, Faults, Place, ReadError};
 #[cfg(feature = "json")]
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use merl::{parse_merl, read_merl, write_merl};
+#[cfg(feature = "png")]
+pub use png::{contour_picture, write_png};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
 pub use sh::{parse_sh, read_sh, write_sh};
-pub use svg::{SvgOptions, write_svg};
-pub use visible_obj::{fragment_groups, visible_groups};
+#[cfg(feature = "gltf")]
+pub use shadow_glb::shadow_meshes;
+pub use svg::{BrdfPicture, DrawingCounts, DrawingOptions, Fill, SvgOptions, write_brdf_svg, write_drawing, write_svg};
+pub use visible_obj::{fragment_groups, shadow_groups, visible_groups};
 
 use crate::scene::{Repair, Scene};
 use formats::Format;

@@ -1,9 +1,9 @@
-//! Visible fragments in space, and fragments of the 3D BSP, as groups for [`obj::write`](super::obj::write).
+//! Visible fragments in space, lit and shadowed parts, and fragments of the 3D BSP, as groups for [`obj::write`](super::obj::write).
 
 use super::mtl;
 use super::obj::Group;
 use crate::bsp::SceneBsp;
-use crate::contour::ContourImage;
+use crate::contour::{ContourImage, Shadows};
 use crate::scene::{PolygonId, Scene, Side};
 use glam::DVec3;
 
@@ -22,7 +22,7 @@ pub fn visible_groups(image: &ContourImage) -> Vec<Group> {
         if cell.side() == Some(Side::Front) {
             corners.reverse();
         }
-        (polygon, corners)
+        (polygon, "", corners)
     });
     grouped(image.scene(), faces)
 }
@@ -31,15 +31,28 @@ pub fn visible_groups(image: &ContourImage) -> Vec<Group> {
 pub fn fragment_groups(bsp: &SceneBsp) -> Vec<Group> {
     let mut fragments: Vec<_> = bsp.fragments().map(|fragment| (fragment.polygon(), fragment.id())).collect();
     fragments.sort_unstable();
-    grouped(bsp.scene(), fragments.into_iter().map(|(polygon, id)| (polygon, bsp.fragment(id).corners().collect())))
+    let faces = fragments.into_iter().map(|(polygon, id)| (polygon, "", bsp.fragment(id).corners().collect()));
+    grouped(bsp.scene(), faces)
 }
 
-/// Groups faces that come by ascending polygon.
-fn grouped(scene: &Scene, faces: impl Iterator<Item = (PolygonId, Vec<DVec3>)>) -> Vec<Group> {
+/// The parts of polygons that a light reaches, in groups `polygon_K_lit`, and those that it does not, in groups `polygon_K_shadow`, likewise. Parts have
+/// vertices in common as [`Shadows`] has them, so that the file is watertight where the scene is.
+pub fn shadow_groups(shadows: &Shadows) -> Vec<Group> {
+    let mut parts: Vec<_> = shadows.parts().collect();
+    parts.sort_by_key(|part| (part.polygon(), !part.is_lit()));
+    let faces = parts.into_iter().map(|part| {
+        let corners = part.corners().iter().map(|&corner| shadows.vertices()[corner as usize]);
+        (part.polygon(), if part.is_lit() { "_lit" } else { "_shadow" }, corners.collect())
+    });
+    grouped(shadows.scene(), faces)
+}
+
+/// Groups faces that come by ascending polygon, and what is to be added to its name.
+fn grouped(scene: &Scene, faces: impl Iterator<Item = (PolygonId, &'static str, Vec<DVec3>)>) -> Vec<Group> {
     let names = mtl::names(scene.materials());
     let mut groups: Vec<Group> = Vec::new();
     let mut last = None;
-    for (polygon, mut corners) in faces {
+    for (polygon, kind, mut corners) in faces {
         corners.dedup();
         while corners.len() > 1 && corners.first() == corners.last() {
             corners.pop();
@@ -47,9 +60,9 @@ fn grouped(scene: &Scene, faces: impl Iterator<Item = (PolygonId, Vec<DVec3>)>) 
         if corners.len() < 3 {
             continue;
         }
-        if last.replace(polygon) != Some(polygon) {
+        if last.replace((polygon, kind)) != Some((polygon, kind)) {
             let material = Some(names[scene.polygon(polygon).material_id().index()].clone());
-            groups.push(Group { name: format!("polygon_{polygon}"), material, polygons: Vec::new() });
+            groups.push(Group { name: format!("polygon_{polygon}{kind}"), material, polygons: Vec::new() });
         }
         if let Some(group) = groups.last_mut() {
             group.polygons.push(corners);

@@ -22,7 +22,7 @@ mod validate;
 mod weld;
 
 pub use builder::{FaceSpec, SceneBuilder};
-pub use material::Material;
+pub use material::{Material, MetallicRoughness};
 pub use moved::MoveError;
 pub use problem::{SceneError, SceneProblem};
 pub use repair::{

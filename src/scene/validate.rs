@@ -50,10 +50,16 @@ pub(super) fn check_face(
 /// The materials with numbers that are negative or not finite.
 pub(super) fn check_materials(materials: &[Material], problems: &mut Vec<SceneProblem>) {
     for (index, material) in materials.iter().enumerate() {
-        let numbers: [(&'static str, &[f64]); 4] = [
+        let [metallic, roughness] =
+            material.metallic_roughness.map_or([0.0; 2], |surface| [surface.metallic, surface.roughness]);
+        let base_colour = material.metallic_roughness.map_or([0.0; 3], |surface| surface.base_colour);
+        let numbers: [(&'static str, &[f64]); 7] = [
             ("diffuse reflectance", &material.diffuse),
             ("specular reflectance", &material.specular),
             ("exponent", &[material.exponent]),
+            ("base colour", &base_colour),
+            ("metallic factor", &[metallic]),
+            ("roughness", &[roughness]),
             ("emission", &material.emission),
         ];
         let all = numbers.into_iter().flat_map(|(what, values)| values.iter().map(move |&value| (what, value)));

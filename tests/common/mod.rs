@@ -2,6 +2,8 @@
 #![allow(dead_code, reason = "every test file uses its own part")]
 
 pub(crate) mod face;
+#[cfg(feature = "cli")]
+pub(crate) mod program;
 pub(crate) mod scenes;
 
 use glam::{DMat3, DQuat, DVec3};

@@ -99,7 +99,8 @@ fn parse_threads(text: &str) -> Result<NonZeroUsize, String> {
     count.ok_or_else(|| "it takes a whole number from 1 to 1024".to_owned())
 }
 
-fn parse_number(text: &str) -> Result<f64, String> {
+/// A finite number.
+pub(crate) fn parse_number(text: &str) -> Result<f64, String> {
     let number: f64 = text.trim().parse().map_err(|_| format!("{:?} is not a number", text.trim()))?;
     if number.is_finite() { Ok(number) } else { Err(format!("{} is not finite", text.trim())) }
 }

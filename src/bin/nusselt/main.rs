@@ -1,8 +1,10 @@
 //! The command line program `nusselt`.
 
 mod args;
+mod brdf;
 mod compare;
 mod contour;
+mod draw;
 mod failure;
 mod form_factors;
 mod info;
@@ -12,8 +14,11 @@ mod place;
 mod point_factors;
 mod progress;
 mod proof;
+mod radiosity;
+mod reflect;
 mod repairs;
 mod scene;
+mod shadows;
 mod summary;
 mod verify;
 
@@ -39,6 +44,10 @@ enum Command {
     PointFactors(point_factors::PointFactorsOf),
     #[command(name = "form-factors")]
     FormFactors(form_factors::FormFactors),
+    Radiosity(radiosity::Radiosity),
+    Draw(draw::Draw),
+    Shadows(shadows::ShadowsOf),
+    Reflect(reflect::Reflect),
     Compare(compare::Compare),
     Verify(verify::Verify),
     Scene(scene::Scene),
@@ -51,6 +60,10 @@ impl Command {
             Self::Contour(command) => command.run(common),
             Self::PointFactors(command) => command.run(common),
             Self::FormFactors(command) => command.run(common),
+            Self::Radiosity(command) => command.run(common),
+            Self::Draw(command) => command.run(common),
+            Self::Shadows(command) => command.run(common),
+            Self::Reflect(command) => command.run(common),
             Self::Compare(command) => command.run(common),
             Self::Verify(command) => command.run(common),
             Self::Scene(command) => command.run(common),

@@ -2,12 +2,42 @@
 
 use crate::failure::Failure;
 use glam::DVec3;
-use nusselt::contour::{Domain, SurfaceError, SurfaceIndex, Viewpoint};
+use nusselt::contour::{Domain, Frustum, FrustumError, SurfaceError, SurfaceIndex, Viewpoint};
 use nusselt::io::{PointLine, PointReader, open_points};
 use nusselt::scene::{PieceId, PolygonId, Scene, Side};
 use std::fmt::Display;
 use std::io::Read;
 use std::path::{Path, PathBuf};
+
+/// What a camera sees that looks from one point at another, with a vertical field of view in degrees.
+pub(crate) fn camera(
+    eye: DVec3,
+    look_at: DVec3,
+    fov: f64,
+    aspect: Option<f64>,
+    up: Option<DVec3>,
+) -> Result<Frustum, Failure> {
+    let usage = |message: String| Err(Failure::Usage(message));
+    let aspect = aspect.unwrap_or(1.0);
+    // Halves, so that no difference overflows.
+    let towards = look_at * 0.5 - eye * 0.5;
+    let towards = if towards == DVec3::ZERO { look_at - eye } else { towards };
+    if towards == DVec3::ZERO {
+        return usage("--look-at is --eye; look at another point".to_owned());
+    }
+    let made = match up {
+        Some(up) => Frustum::new(towards, up, fov, aspect),
+        None => match Frustum::new(towards, DVec3::Z, fov, aspect) {
+            Err(FrustumError::UpAlong) => Frustum::new(towards, DVec3::Y, fov, aspect),
+            made => made,
+        },
+    };
+    match made {
+        Ok(frustum) => Ok(frustum),
+        Err(error @ FrustumError::UpAlong) => usage(format!("--up: {error}")),
+        Err(error) => usage(format!("--look-at, --fov and --aspect: {error}")),
+    }
+}
 
 /// The hemisphere about a normal: above the polygon that the eye is meant to be on, unless it is to be `free`.
 pub(crate) fn hemisphere(
@@ -18,6 +48,20 @@ pub(crate) fn hemisphere(
 ) -> Result<(Viewpoint, Domain), SurfaceError> {
     let surface = if free { None } else { Viewpoint::surface_at(scene, eye, normal) };
     above(scene, eye, normal, surface)
+}
+
+/// On a polygon of the scene of a file, where it is nearest to the eye.
+pub(crate) fn on_polygon(
+    file: &Path,
+    scene: &Scene,
+    polygon: PolygonId,
+    side: Side,
+    eye: DVec3,
+) -> Result<Viewpoint, Failure> {
+    Viewpoint::on_surface(scene, polygon, side, eye).map_err(|error| match error {
+        SurfaceError::UnknownPolygon { .. } => Failure::Usage(format!("--on: {error}")),
+        _ => Failure::about(file, &error),
+    })
 }
 
 /// On the polygon that the point names, on the side that its normal shows; otherwise where it is meant to be: on one of the surfaces,

@@ -12,13 +12,20 @@ pub(crate) struct Progress {
     start: Instant,
     shown: Option<Instant>,
     is_on: bool,
+    /// What else there is to tell.
+    note: String,
 }
 
 impl Progress {
     /// Of `total` things, if that is known, called `what`.
     pub(crate) fn new(what: &'static str, total: Option<usize>, quiet: bool) -> Self {
         let is_on = !quiet && stderr().is_terminal();
-        Self { what, total, done: 0, start: Instant::now(), shown: None, is_on }
+        Self { what, total, done: 0, start: Instant::now(), shown: None, is_on, note: String::new() }
+    }
+
+    /// What is told beside how many are done.
+    pub(crate) fn note(&mut self, note: String) {
+        self.note = note;
     }
 
     /// So many more are done.
@@ -34,11 +41,12 @@ impl Progress {
 
     fn line(&self, seconds: f64) -> String {
         let rate = self.done as f64 / seconds.max(1e-9);
+        let note = if self.note.is_empty() { String::new() } else { format!(", {}", self.note) };
         let Some(total) = self.total else {
-            return format!("{} {}, {rate:.1}/s", self.done, self.what);
+            return format!("{} {}, {rate:.1}/s{note}", self.done, self.what);
         };
         let left = total.saturating_sub(self.done) as f64 / rate.max(1e-9);
-        format!("{} of {total} {}, {rate:.1}/s, {left:.0} s left", self.done, self.what)
+        format!("{} of {total} {}, {rate:.1}/s, {left:.0} s left{note}", self.done, self.what)
     }
 }
 

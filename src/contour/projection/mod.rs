@@ -167,11 +167,15 @@ impl Projector {
     /// The image plane of a camera, at distance 1, from border to border.
     fn of_camera(frustum: &Frustum) -> Self {
         let height = (frustum.degrees() / 2.0).to_radians().tan();
-        let reach = DVec2::new(frustum.aspect() * height, height);
+        Self::of_plane(frustum.frame(), DVec2::new(frustum.aspect() * height, height))
+    }
+
+    /// The part of an image plane at distance 1 that reaches so far to each side.
+    pub(crate) fn of_plane(frame: ViewFrame, reach: DVec2) -> Self {
         let clips = [DVec3::X, DVec3::Y].into_iter().zip(reach.to_array());
         let clips = clips.flat_map(|(axis, reach)| [axis, -axis].map(|n| n + DVec3::Z * reach)).collect();
         let window = Window { low: -reach, high: reach };
-        Self { projection: Projection::Gnomonic, frame: frustum.frame(), window, clips, seams: Vec::new() }
+        Self { projection: Projection::Gnomonic, frame, window, clips, seams: Vec::new() }
     }
 
     /// The projection.

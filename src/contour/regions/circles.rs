@@ -22,7 +22,7 @@ impl GreatCircles {
     /// Finds them. Equal great circles have the same cosine with any fixed axis, but for rounding. Sorted by that, only
     /// those closer than what rounding can do are compared, as vectors of whole numbers without a common divisor. The names
     /// in `also` get a number even if no side is on such a great circle.
-    pub(super) fn new(mosaic: &mut Mosaic<'_>, also: &[CircleId]) -> Self {
+    pub(crate) fn new(mosaic: &mut Mosaic<'_>, also: &[CircleId]) -> Self {
         let axis = DVec3::new(0.541_196_1, 0.306_562_96, 0.783_036_4);
         let count = mosaic.directions.circle_count();
         let mut is_used = vec![false; count];
@@ -63,7 +63,7 @@ impl GreatCircles {
     }
 
     /// The great circle's number, and the sign that the inside has for its normal.
-    pub(super) fn of(&self, half: HalfSphere) -> (u32, Sign) {
+    pub(crate) fn of(&self, half: HalfSphere) -> (u32, Sign) {
         let (circle, sign) = self.of[half.circle().0 as usize];
         (circle, sign * half.inside())
     }
@@ -78,7 +78,7 @@ impl GreatCircles {
         self.lowest[circle as usize]
     }
 
-    pub(super) fn count(&self) -> usize {
+    pub(crate) fn count(&self) -> usize {
         self.lowest.len()
     }
 }

@@ -5,10 +5,11 @@
 //! the cells at each corner. Rounded coordinates decide nothing, and so another contour tree of the same view gives the same regions.
 
 mod arrangement;
-mod circles;
+pub(crate) mod circles;
 pub(crate) mod mosaic;
 pub(crate) mod outlines;
-mod sets;
+pub(crate) mod places;
+pub(crate) mod sets;
 
 use super::image::{CellId, ContourImage};
 use crate::exact::Sign;

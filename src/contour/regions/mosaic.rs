@@ -79,6 +79,18 @@ impl<'a> Mosaic<'a> {
         Self { skeleton, directions: Cow::Borrowed(&image.tree.directions), faces, arcs, knife: Knife::default() }
     }
 
+    /// Polygons that need not tile the sphere, with nothing said of what is seen in them.
+    pub(crate) fn of_polygons(
+        skeleton: &'a Skeleton,
+        directions: Directions,
+        arcs: Vec<PolygonArc>,
+        polygons: &[Span],
+    ) -> Self {
+        let face = |&boundary: &Span| Face { label: None, cell: None, part: Part::Front, boundary };
+        let faces = polygons.iter().map(face).collect();
+        Self { skeleton, directions: Cow::Owned(directions), faces, arcs, knife: Knife::default() }
+    }
+
     /// The sides of a face, counter-clockwise seen from outside of the sphere.
     pub(crate) fn boundary(&self, face: &Face) -> &[PolygonArc] {
         &self.arcs[face.boundary.range()]

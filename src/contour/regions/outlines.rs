@@ -74,7 +74,7 @@ impl<'a> Outlines<'a> {
         let circles =
             GreatCircles::new(&mut mosaic, seam.as_ref().map_or(&[], |seam| std::slice::from_ref(&seam.along)));
         let arrangement = Arrangement::new(&mut mosaic, &circles);
-        let stretches = arrangement.places.len() as u32;
+        let stretches = arrangement.place_count() as u32;
         let borders: Vec<bool> = (0..stretches).map(|s| arrangement.is_border(&mosaic.faces, s)).collect();
         let spots = spots(&mut mosaic, &circles, &arrangement, seam);
         let (chains, chain_of) = chains(&arrangement, &borders, &spots);
@@ -156,7 +156,7 @@ impl<'a> Outlines<'a> {
 
     /// The n-th stretch after another on its great circle.
     fn nth(&self, stretch: u32, n: u32) -> u32 {
-        let places = self.arrangement.places_on(self.arrangement.places[stretch as usize].circle);
+        let places = self.arrangement.places_on(self.arrangement.place(stretch).track);
         places.start + (stretch - places.start + n) % places.len() as u32
     }
 
@@ -187,7 +187,7 @@ impl<'a> Outlines<'a> {
 
     /// The number of the great circle of a chain.
     pub(crate) fn circle(&self, chain: u32) -> u32 {
-        self.arrangement.places[self.chains[chain as usize].first as usize].circle
+        self.arrangement.place(self.chains[chain as usize].first).track
     }
 
     /// The faces beside the first and the last stretch of a chain, those on the positive side first.
@@ -210,7 +210,7 @@ impl<'a> Outlines<'a> {
         // The next stretch is less than half a turn long, so its end is on the side to which it leads.
         let half = self.first_half(next);
         let ahead = if half.forward { self.arrangement.next(half.stretch) } else { half.stretch };
-        let direction = self.arrangement.places[ahead as usize].direction;
+        let direction = self.arrangement.place(ahead).direction;
         let circle = self.circles.name(self.circle(run.chain));
         let Mosaic { skeleton, directions, knife, .. } = &mut self.mosaic;
         directions.side(skeleton, direction, circle, &mut knife.cache) * inside(run)
@@ -235,7 +235,7 @@ fn spots(mosaic: &mut Mosaic<'_>, circles: &GreatCircles, arrangement: &Arrangem
         }
     }
     for place in arrangement.places_on(circle) {
-        let direction = arrangement.places[place as usize].direction;
+        let direction = arrangement.place(place).direction;
         let Mosaic { skeleton, directions, knife, .. } = &mut *mosaic;
         if directions.side(skeleton, direction, across, &mut knife.cache).is_zero() {
             spots[arrangement.vertex(place) as usize] = Spot::Pole;
@@ -278,7 +278,7 @@ fn chains(arrangement: &Arrangement, borders: &[bool], spots: &[Spot]) -> (Vec<C
     };
     let mut place = 0;
     while (place as usize) < borders.len() {
-        let on_circle = arrangement.places_on(arrangement.places[place as usize].circle);
+        let on_circle = arrangement.places_on(arrangement.place(place).track);
         place = on_circle.end;
         let starts = on_circle.clone().filter(|&s| borders[s as usize] && !goes_through(s));
         let mut is_closed = borders[on_circle.start as usize];

@@ -1,18 +1,18 @@
 //! Disjoint sets of numbers.
 
 /// Disjoint sets of the numbers below a count, each known by its lowest number.
-pub(super) struct Sets {
+pub(crate) struct Sets {
     above: Vec<u32>,
 }
 
 impl Sets {
     /// Every number by itself.
-    pub(super) fn new(count: usize) -> Self {
+    pub(crate) fn new(count: usize) -> Self {
         Self { above: (0..count as u32).collect() }
     }
 
     /// The lowest number of a set.
-    pub(super) fn find(&mut self, mut k: u32) -> u32 {
+    pub(crate) fn find(&mut self, mut k: u32) -> u32 {
         while self.above[k as usize] != k {
             let above = self.above[self.above[k as usize] as usize];
             self.above[k as usize] = above;
@@ -21,7 +21,7 @@ impl Sets {
         k
     }
 
-    pub(super) fn unite(&mut self, a: u32, b: u32) {
+    pub(crate) fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
         self.above[a.max(b) as usize] = a.min(b);
     }

@@ -65,12 +65,24 @@ impl SceneBvh {
         options: &ViewOptions,
         space: &mut ViewSpace,
     ) -> Result<ContourImage, ViewError> {
+        let sight = self.sight(viewpoint, domain, options, space)?;
+        Ok(sight.finish(self.clone().into(), viewpoint, domain, space))
+    }
+
+    /// What an image is made of.
+    pub(in crate::contour) fn sight(
+        &self,
+        viewpoint: &Viewpoint,
+        domain: &Domain,
+        options: &ViewOptions,
+        space: &mut ViewSpace,
+    ) -> Result<Sight<'_>, ViewError> {
         let hierarchy = &*self.hierarchy;
         let sight = Sight::new(&hierarchy.scene, &hierarchy.skeleton, viewpoint, domain, options, space)?;
         let mut walk = Walk { hierarchy, sight };
         walk.put_in_windows(domain);
         walk.run(options.max_cells)?;
-        Ok(walk.sight.finish(self.clone().into(), viewpoint, domain, space))
+        Ok(walk.sight)
     }
 }
 

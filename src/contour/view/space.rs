@@ -28,12 +28,12 @@ pub(crate) struct CellBuffers {
 
 /// What is needed until the view is done.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Buffers {
-    pub(super) work: Workspace,
+pub(in crate::contour) struct Buffers {
+    pub(in crate::contour) work: Workspace,
     /// The great circles of lines of the scene, the directions of points, once they are needed.
     pub(super) circles: Numbers,
     pub(super) directions: Numbers,
-    pub(super) polygon: Vec<PolygonArc>,
+    pub(in crate::contour) polygon: Vec<PolygonArc>,
     /// For the way by boxes.
     pub(super) walk: WalkBuffers,
     /// For the way by the 3D BSP.
@@ -76,7 +76,7 @@ impl ViewSpace {
 
 /// Numbers given to some of many things.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Numbers {
+pub(in crate::contour) struct Numbers {
     /// One more than the number, or 0: so that untouched memory costs nothing.
     of: Vec<u32>,
     used: Vec<u32>,

@@ -225,6 +225,9 @@ pub(super) struct Material {
 pub(super) struct Surface {
     pub(super) base_color_factor: Option<[f64; 4]>,
     pub(super) base_color_texture: Option<serde::de::IgnoredAny>,
+    pub(super) metallic_factor: Option<f64>,
+    pub(super) roughness_factor: Option<f64>,
+    pub(super) metallic_roughness_texture: Option<serde::de::IgnoredAny>,
 }
 
 #[derive(Debug, Default, Deserialize)]

@@ -1,4 +1,4 @@
-//! glTF 2.0 and GLB: triangles of the nodes of a scene.
+//! glTF 2.0 and GLB: triangles of the nodes of a scene; [`write_glb`] writes some.
 //!
 //! The default scene is walked depth-first, each node once, and every triangle of every mesh on the way is a face, in
 //! the order of primitives and indices. Coordinates are those after the transforms of the nodes, which are
@@ -14,6 +14,9 @@ mod graph;
 mod json;
 mod material;
 mod primitive;
+mod write;
+
+pub use write::{GlbMesh, write_glb};
 
 use super::draft::Draft;
 use super::error::Place;

@@ -1,7 +1,12 @@
 //! Contour images as SVG: what is seen, in flat colours, with thin outlines.
 
+mod brdf;
+mod drawing;
 mod lines;
-mod paint;
+pub(super) mod paint;
+
+pub use brdf::{BrdfPicture, write_brdf_svg};
+pub use drawing::{DrawingCounts, DrawingOptions, Fill, write_drawing};
 
 use crate::contour::{CellId, ContourImage, Projection, Projector};
 use crate::scene::PolygonId;

@@ -1,22 +1,23 @@
 //! The colours of polygons in a picture.
 
 use crate::contour::{ContourImage, ViewFrame};
+use crate::io::srgb::encoded;
 use crate::scene::{PolygonId, PolygonRef, Scene};
 use glam::DVec3;
 
-/// What is seen where nothing is.
-const BACKGROUND: &str = "#cfe4f7";
+/// What is seen where nothing is, linear: #cfe4f7.
+const BACKGROUND: DVec3 = DVec3::new(0.623_960_391_746_752_2, 0.775_822_286_098_042_4, 0.930_110_858_154_214);
 
 /// Colours polygons so that those of one material can be told apart by their orientation, and those
 /// of one orientation, a little, by their object.
-pub(super) struct Paint<'a> {
+pub(in crate::io) struct Paint<'a> {
     image: &'a ContourImage,
     light: DVec3,
 }
 
 impl<'a> Paint<'a> {
     /// Light comes from over the eye's left shoulder.
-    pub(super) fn new(image: &'a ContourImage, frame: ViewFrame) -> Self {
+    pub(in crate::io) fn new(image: &'a ContourImage, frame: ViewFrame) -> Self {
         let light = (frame.up() * 0.65 - frame.towards() * 0.6 - frame.right() * 0.35).normalize();
         Self { image, light }
     }
@@ -30,11 +31,17 @@ impl<'a> Paint<'a> {
         if normal.dot(from_eye) > 0.0 { -normal } else { normal }
     }
 
+    /// As the web writes colours.
     pub(super) fn of(&self, polygon: Option<PolygonId>) -> String {
-        let Some(id) = polygon else { return BACKGROUND.to_owned() };
+        hex(self.linear(polygon))
+    }
+
+    /// As linear red, green and blue.
+    pub(in crate::io) fn linear(&self, polygon: Option<PolygonId>) -> DVec3 {
+        let Some(id) = polygon else { return BACKGROUND };
         let polygon = self.image.scene().polygon(id);
         let material = polygon.material();
-        let colour = if material.is_emitter() {
+        if material.is_emitter() {
             let emission = DVec3::from(material.emission);
             // Bright, with some of its hue.
             DVec3::ONE.lerp(emission / emission.max_element(), 0.5)
@@ -43,8 +50,7 @@ impl<'a> Paint<'a> {
             let facing = self.normal_to_eye(polygon).dot(self.light);
             // A third of the way to grey, so that black is not a hole.
             (diffuse * 0.92 + 0.04) * (0.55 + 0.45 * facing) * (0.94 + 0.12 * variation(polygon.object().0))
-        };
-        hex(colour)
+        }
     }
 }
 
@@ -54,12 +60,8 @@ fn variation(k: u32) -> f64 {
 }
 
 /// Linear RGB as the web writes colours.
-fn hex(linear: DVec3) -> String {
-    let [r, g, b] = linear.to_array().map(|c| {
-        let c = c.clamp(0.0, 1.0);
-        let encoded = if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 };
-        (encoded * 255.0).round() as u8
-    });
+pub(super) fn hex(linear: DVec3) -> String {
+    let [r, g, b] = linear.to_array().map(encoded);
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 

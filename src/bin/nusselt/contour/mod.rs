@@ -14,7 +14,8 @@ use crate::summary::Timing;
 use glam::DVec3;
 use nusselt::contour::{ContourImage, Projection, Projector, ViewOptions};
 use nusselt::io::{
-    ContourSummary, SvgOptions, visible_groups, write_certificate, write_contour_json, write_geojson, write_svg,
+    ContourSummary, SvgOptions, contour_picture, visible_groups, write_certificate, write_contour_json, write_geojson,
+    write_png, write_svg,
 };
 use nusselt::scene::{PolygonId, Side};
 use nusselt::verify::Arithmetic;
@@ -80,11 +81,15 @@ pub(crate) struct Contour {
     /// Take --eye as it is, even if it lies on a polygon
     #[arg(long, conflicts_with_all = ["sphere", "on", "look_at"])]
     free: bool,
-    /// Write to this file; the ending decides: .json, .svg, .obj (visible parts in space), or .geojson (visible
-    /// regions as polygons with holes, in coordinates of the picture). May be repeated
+    /// Write to this file; the ending decides: .json, .svg, .png (without lines, each pixel the mean of what is seen in
+    /// it), .obj (visible parts in space), or .geojson (visible regions as polygons with holes, in coordinates of the
+    /// picture). May be repeated
     #[arg(short, long, value_name = "FILE", value_parser = Output::parse)]
     output: Vec<Output>,
-    /// How to draw .svg and .geojson [default: nusselt; gnomonic for a camera, equirectangular for the sphere]
+    /// The width of .png in pixels
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = clap::value_parser!(u32).range(1..=16384))]
+    width: u32,
+    /// How to draw .svg, .png and .geojson [default: nusselt; gnomonic for a camera, equirectangular for the sphere]
     #[arg(long, value_name = "NAME", value_parser = parse_projection)]
     projection: Option<Projection>,
     /// Draw the contour tree and the quadtree over .svg
@@ -116,6 +121,7 @@ pub(crate) struct Contour {
 enum Format {
     Json,
     Svg,
+    Png,
     Obj,
     Geojson,
 }
@@ -134,9 +140,10 @@ impl Output {
         let format = match ending.as_deref() {
             Some("json") => Format::Json,
             Some("svg") => Format::Svg,
+            Some("png") => Format::Png,
             Some("obj") => Format::Obj,
             Some("geojson") => Format::Geojson,
-            _ => return Err("its ending is none of .json, .svg, .obj, .geojson".to_owned()),
+            _ => return Err("its ending is none of .json, .svg, .png, .obj, .geojson".to_owned()),
         };
         Ok(Self { path, format })
     }
@@ -253,6 +260,12 @@ impl Contour {
                 let projector = projector(image, projection)?;
                 let options = SvgOptions { show_tree: self.show_tree, ..SvgOptions::default() };
                 write_file(path, |out| write_svg(image, &projector, &options, out))
+            }
+            Format::Png => {
+                let projector = projector(image, projection)?;
+                let picture = contour_picture(image, &projector, self.width);
+                let picture = picture.map_err(|error| Failure::Usage(format!("--width: {error}")))?;
+                write_file(path, |out| write_png(&picture, out))
             }
             Format::Geojson => {
                 let projector = projector(image, projection)?;

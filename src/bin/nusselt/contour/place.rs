@@ -2,10 +2,9 @@
 
 use super::Contour;
 use crate::failure::Failure;
-use crate::place::hemisphere;
-use glam::DVec3;
-use nusselt::contour::{Domain, Frustum, FrustumError, SurfaceError, Viewpoint, Windows};
-use nusselt::scene::{PolygonId, Scene, Side};
+use crate::place::{camera, hemisphere, on_polygon};
+use nusselt::contour::{Domain, Frustum, Viewpoint, Windows};
+use nusselt::scene::{PolygonId, Scene};
 
 impl Contour {
     /// What the camera sees, if there is one.
@@ -19,25 +18,7 @@ impl Contour {
                 None => Ok(None),
             };
         };
-        let aspect = self.aspect.unwrap_or(1.0);
-        // Halves, so that no difference overflows.
-        let towards = look_at * 0.5 - self.eye * 0.5;
-        let towards = if towards == DVec3::ZERO { look_at - self.eye } else { towards };
-        if towards == DVec3::ZERO {
-            return usage("--look-at is --eye; look at another point".to_owned());
-        }
-        let made = match self.up {
-            Some(up) => Frustum::new(towards, up, fov, aspect),
-            None => match Frustum::new(towards, DVec3::Z, fov, aspect) {
-                Err(FrustumError::UpAlong) => Frustum::new(towards, DVec3::Y, fov, aspect),
-                made => made,
-            },
-        };
-        match made {
-            Ok(frustum) => Ok(Some(frustum)),
-            Err(error @ FrustumError::UpAlong) => usage(format!("--up: {error}")),
-            Err(error) => usage(format!("--look-at, --fov and --aspect: {error}")),
-        }
+        camera(self.eye, look_at, fov, self.aspect, self.up).map(Some)
     }
 
     /// Where to stand and what to look at.
@@ -62,18 +43,11 @@ impl Contour {
 
     fn stand_without_windows(&self, scene: &Scene, camera: Option<Frustum>) -> Result<(Viewpoint, Domain), Failure> {
         if let Some((polygon, side)) = self.on {
-            return Ok((self.on_polygon(scene, polygon, side)?, Domain::Above));
+            return Ok((on_polygon(&self.scene, scene, polygon, side, self.eye)?, Domain::Above));
         }
         let Some(normal) = self.normal else {
             return Ok((Viewpoint::free(self.eye), camera.map_or(Domain::Sphere, Domain::Frustum)));
         };
         hemisphere(scene, self.eye, normal, self.free).map_err(|error| Failure::about(&self.scene, &error))
-    }
-
-    fn on_polygon(&self, scene: &Scene, polygon: PolygonId, side: Side) -> Result<Viewpoint, Failure> {
-        Viewpoint::on_surface(scene, polygon, side, self.eye).map_err(|error| match error {
-            SurfaceError::UnknownPolygon { .. } => Failure::Usage(format!("--on: {error}")),
-            _ => Failure::about(&self.scene, &error),
-        })
     }
 }

@@ -1,0 +1,102 @@
+//! Unfinished solutions, kept to go on from.
+
+use crate::io::digest::Digest;
+use crate::radiosity::SolverState;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::io::{self, Write};
+
+/// The schema's name.
+pub const STATE_SCHEMA: &str = "nusselt.radiosity-state/1";
+
+/// What a state belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct StateKey {
+    /// Of the patches ([`scene_digest`](crate::io::matrix::scene_digest)).
+    pub patches: Digest,
+    /// Of what they emit and reflect.
+    pub materials: Digest,
+    /// The tolerance of form factors.
+    pub tolerance: f64,
+}
+
+impl StateKey {
+    /// Of a scene of patches.
+    pub fn new(scene: &crate::scene::Scene, tolerance: f64) -> Self {
+        let materials = scene.polygons().fold(Digest::EMPTY, |digest, polygon| {
+            let material = polygon.material();
+            let colours = material.diffuse.iter().chain(&material.emission);
+            colours.fold(digest, |digest, x| digest.with(&x.to_bits().to_le_bytes()))
+        });
+        Self { patches: crate::io::matrix::scene_digest(scene), materials, tolerance }
+    }
+}
+
+/// Why a state cannot be gone on from.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StateError {
+    /// It is no state, or one of another version.
+    #[error("it is not a state of this version: {0}; leave out --resume to start anew")]
+    Malformed(String),
+    /// It belongs to something else.
+    #[error("it is for {what}; leave out --resume to start anew")]
+    Other {
+        /// What is different.
+        what: &'static str,
+    },
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Kept {
+    schema: String,
+    key: StateKey,
+    shots: usize,
+    gone: [[f64; 3]; 3],
+    radiosity: Vec<[f64; 3]>,
+    unshot: Vec<[f64; 3]>,
+}
+
+/// Writes a state.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_state(key: &StateKey, state: &SolverState, out: &mut impl Write) -> io::Result<()> {
+    let list = |colours: &[DVec3]| colours.iter().map(DVec3::to_array).collect();
+    let kept = Kept {
+        schema: STATE_SCHEMA.to_owned(),
+        key: *key,
+        shots: state.shots,
+        gone: state.gone.map(|power| power.to_array()),
+        radiosity: list(&state.radiosity),
+        unshot: list(&state.unshot),
+    };
+    serde_json::to_writer(out, &kept).map_err(io::Error::from)
+}
+
+/// Reads a state that belongs to `key`. Takes any text.
+///
+/// # Errors
+/// If it is no state, or that of something else.
+pub fn read_state(key: &StateKey, text: &str) -> Result<SolverState, StateError> {
+    let kept: Kept = serde_json::from_str(text).map_err(|error| StateError::Malformed(error.to_string()))?;
+    if kept.schema != STATE_SCHEMA {
+        return Err(StateError::Malformed(format!("its schema is {:?}", kept.schema)));
+    }
+    let differs = [
+        (kept.key.patches != key.patches, "another scene, or other patches"),
+        (kept.key.materials != key.materials, "other materials"),
+        (kept.key.tolerance.to_bits() != key.tolerance.to_bits(), "another tolerance"),
+    ];
+    if let Some((_, what)) = differs.into_iter().find(|(differs, _)| *differs) {
+        return Err(StateError::Other { what });
+    }
+    let list = |colours: Vec<[f64; 3]>| colours.into_iter().map(DVec3::from).collect();
+    Ok(SolverState {
+        radiosity: list(kept.radiosity),
+        unshot: list(kept.unshot),
+        gone: kept.gone.map(DVec3::from),
+        shots: kept.shots,
+    })
+}

@@ -1,0 +1,75 @@
+//! Why there is no solution.
+
+use crate::contour::ViewError;
+use crate::factors::ExchangeError;
+use crate::scene::PolygonId;
+
+/// Why there is no radiosity.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RadiosityError {
+    /// A material reflects more than it gets, or less than nothing, or its colours are no numbers.
+    #[error(
+        "polygon {polygon}: its material {material} has a diffuse reflectance of {reflectance:?}; each of red, green and blue has to be from 0 to 1"
+    )]
+    BadReflectance {
+        /// The first polygon of that material.
+        polygon: PolygonId,
+        /// The material's name.
+        material: String,
+        /// What it says.
+        reflectance: [f64; 3],
+    },
+    /// A material's emission is negative or no number.
+    #[error(
+        "polygon {polygon}: its material {material} has an emission of {emission:?}; it has to be finite and at least 0"
+    )]
+    BadEmission {
+        /// The first polygon of that material.
+        polygon: PolygonId,
+        /// The material's name.
+        material: String,
+        /// What it says.
+        emission: [f64; 3],
+    },
+    /// Nothing emits from its front.
+    #[error("no polygon emits; give a material an emission (Ke)")]
+    Dark,
+    /// What surfaces reflect in a closed scene is not less than what they get: it would never end.
+    #[error("nothing is absorbed after {shots} shots; some surface has to reflect less than 1")]
+    Endless {
+        /// How many patches have shot.
+        shots: usize,
+    },
+    /// A state is that of another scene.
+    #[error("the state has {found} patches, but the scene has {expected}; solve it anew")]
+    OtherState {
+        /// How many it has.
+        found: usize,
+        /// How many it should have.
+        expected: usize,
+    },
+    /// A state has numbers that none has.
+    #[error("the state of patch {patch} is negative or not finite; solve it anew")]
+    BadState {
+        /// The first such patch.
+        patch: usize,
+    },
+    /// There is no row of form factors.
+    #[error(transparent)]
+    Exchange(#[from] ExchangeError),
+    /// There is no view from a point.
+    #[error("no view from polygon {polygon}: {source}")]
+    View {
+        /// The polygon that the point is on.
+        polygon: PolygonId,
+        /// Why.
+        source: ViewError,
+    },
+    /// The mesh would have too many corners.
+    #[error("the mesh would have more than {limit} corners; ask for less detail")]
+    TooManyCorners {
+        /// How many are allowed.
+        limit: usize,
+    },
+}

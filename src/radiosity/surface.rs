@@ -1,0 +1,208 @@
+//! A mesh of all surfaces with radiosities at its corners.
+
+use super::{Gather, RadiosityError, strength};
+use crate::scene::{PolygonId, Scene};
+use glam::DVec3;
+use rustc_hash::{FxHashMap, FxHashSet};
+
+/// How far inside of a triangle, as a part of the way to its middle, a corner's radiosity is taken: on the boundary itself what stands on it
+/// there would not be seen.
+const INSIDE: f64 = 1e-3;
+
+/// How fine a surface is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SurfaceOptions {
+    /// An edge is halved if the radiosity in its middle differs from what its ends say by more than this part of it, or of the mean of all surfaces if that
+    /// is larger.
+    pub detail: f64,
+    /// How often at most an edge of a patch is halved: 0 for the patches as they are.
+    pub depth: u32,
+    /// There are at most so many corners.
+    pub most_corners: usize,
+}
+
+impl Default for SurfaceOptions {
+    fn default() -> Self {
+        Self { detail: 0.03, depth: 3, most_corners: 20_000_000 }
+    }
+}
+
+/// Triangles with radiosities at their corners. Triangles of one polygon share corners; those of different polygons do not, as radiosities differ.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// The corners.
+    pub positions: Vec<DVec3>,
+    /// The radiosity of the front at each corner.
+    pub radiosity: Vec<DVec3>,
+    /// Corners by their numbers, counter-clockwise seen from the front.
+    pub triangles: Vec<[u32; 3]>,
+    /// The patch that each triangle is part of: triangles of one patch follow each other.
+    pub patches: Vec<PolygonId>,
+}
+
+impl Surface {
+    /// Makes the surface of a scene of patches, of which patch k is part of polygon `of[k]`: corners of patches first, then middles of edges as long as radiosities change quickly
+    /// along them. The cost is that of a view for every corner and every edge.
+    ///
+    /// # Errors
+    /// If there is no view from some point, or if there are too many corners.
+    ///
+    /// # Panics
+    /// If `of` does not name a polygon for every patch.
+    pub fn new(
+        scene: &Scene,
+        of: &[PolygonId],
+        gather: &Gather<'_>,
+        options: &SurfaceOptions,
+    ) -> Result<Self, RadiosityError> {
+        let mut surface = Self::default();
+        let mut corners: FxHashMap<(PolygonId, [u64; 3]), u32> = FxHashMap::default();
+        let mut places = Vec::new();
+        for patch in scene.polygons() {
+            for piece in patch.pieces() {
+                let ring: Vec<DVec3> = piece.points().collect();
+                let middle = ring.iter().sum::<DVec3>() / ring.len() as f64;
+                let numbers = ring.iter().map(|&p| {
+                    let key = (of[patch.id().index()], p.to_array().map(f64::to_bits));
+                    *corners.entry(key).or_insert_with(|| {
+                        surface.positions.push(p);
+                        places.push((patch.id(), p.lerp(middle, INSIDE)));
+                        places.len() as u32 - 1
+                    })
+                });
+                let numbers: Vec<u32> = numbers.collect();
+                for triangle in fan(&ring, &numbers) {
+                    surface.triangles.push(triangle);
+                    surface.patches.push(patch.id());
+                }
+            }
+            surface.check_size(options)?;
+        }
+        surface.radiosity = gather.at_all(places)?;
+        let mean = surface.mean(gather);
+        let mut accepted: FxHashSet<[u32; 2]> = FxHashSet::default();
+        for _ in 0..options.depth {
+            if !surface.refine(gather, options, mean, &mut accepted)? {
+                break;
+            }
+        }
+        Ok(surface)
+    }
+
+    fn check_size(&self, options: &SurfaceOptions) -> Result<(), RadiosityError> {
+        let limit = options.most_corners;
+        if self.positions.len() > limit { Err(RadiosityError::TooManyCorners { limit }) } else { Ok(()) }
+    }
+
+    /// The mean of what is reflected.
+    fn mean(&self, gather: &Gather<'_>) -> f64 {
+        let (mut sum, mut areas) = (0.0, 0.0);
+        for (triangle, patch) in self.triangles.iter().zip(&self.patches) {
+            let [a, b, c] = triangle.map(|corner| self.positions[corner as usize]);
+            let area = (b - a).cross(c - a).length() / 2.0;
+            let radiosity = triangle.iter().map(|&corner| self.radiosity[corner as usize]).sum::<DVec3>() / 3.0;
+            sum += area * strength(radiosity - gather.emission(*patch)).max(0.0);
+            areas += area;
+        }
+        if areas > 0.0 { sum / areas } else { 0.0 }
+    }
+
+    /// Halves edges that need it; false if none does.
+    fn refine(
+        &mut self,
+        gather: &Gather<'_>,
+        options: &SurfaceOptions,
+        mean: f64,
+        accepted: &mut FxHashSet<[u32; 2]>,
+    ) -> Result<bool, RadiosityError> {
+        let mut asked: FxHashSet<[u32; 2]> = FxHashSet::default();
+        let (mut edges, mut places) = (Vec::new(), Vec::new());
+        for (triangle, &patch) in self.triangles.iter().zip(&self.patches) {
+            let [a, b, c] = triangle.map(|corner| self.positions[corner as usize]);
+            let middle = (a + b + c) / 3.0;
+            for edge in sides(*triangle) {
+                if !accepted.contains(&edge) && asked.insert(edge) {
+                    let [p, q] = edge.map(|corner| self.positions[corner as usize]);
+                    edges.push((edge, p.midpoint(q)));
+                    places.push((patch, p.midpoint(q).lerp(middle, INSIDE)));
+                }
+            }
+        }
+        let found = gather.at_all(places)?;
+        let mut halves: FxHashMap<[u32; 2], u32> = FxHashMap::default();
+        for ((edge, position), radiosity) in edges.into_iter().zip(found) {
+            let [p, q] = edge.map(|corner| self.radiosity[corner as usize]);
+            let off = (radiosity - p.midpoint(q)).abs().max_element() * 3.0;
+            if off > options.detail * strength(radiosity).max(mean) {
+                halves.insert(edge, self.positions.len() as u32);
+                self.positions.push(position);
+                self.radiosity.push(radiosity);
+            } else {
+                accepted.insert(edge);
+            }
+        }
+        self.check_size(options)?;
+        let (mut triangles, mut patches) = (Vec::new(), Vec::new());
+        for (triangle, &patch) in self.triangles.iter().zip(&self.patches) {
+            let before = triangles.len();
+            split(*triangle, sides(*triangle).map(|edge| halves.get(&edge).copied()), &mut triangles);
+            patches.resize(patches.len() + triangles.len() - before, patch);
+        }
+        (self.triangles, self.patches) = (triangles, patches);
+        Ok(!halves.is_empty())
+    }
+}
+
+/// The sides of a triangle, from corner k to the next, each by the smaller corner first.
+fn sides([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)])
+}
+
+/// The triangles that a triangle falls into where some of its sides have a corner in their middle.
+fn split([a, b, c]: [u32; 3], middles: [Option<u32>; 3], out: &mut Vec<[u32; 3]>) {
+    match middles {
+        [None, None, None] => out.push([a, b, c]),
+        [Some(p), None, None] => out.extend([[a, p, c], [p, b, c]]),
+        [Some(p), Some(q), None] => out.extend([[p, b, q], [a, p, q], [a, q, c]]),
+        [Some(p), Some(q), Some(r)] => out.extend([[a, p, r], [p, b, q], [r, q, c], [p, q, r]]),
+        // The same with its corners turned.
+        [p, q, r] => split([b, c, a], [q, r, p], out),
+    }
+}
+
+/// The triangles of a convex ring; a quadrilateral is cut along its shorter diagonal.
+fn fan(ring: &[DVec3], numbers: &[u32]) -> Vec<[u32; 3]> {
+    let first = match ring {
+        [a, b, c, d] if b.distance_squared(*d) < a.distance_squared(*c) => 1,
+        _ => 0,
+    };
+    let corner = |k: usize| numbers[(first + k) % numbers.len()];
+    (1..ring.len() - 1).map(|k| [corner(0), corner(k), corner(k + 1)]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn triangles_fall_into_what_their_sides_say_and_stay_turned_the_same_way() {
+        let at = [[0.0, 0.0], [4.0, 0.0], [0.0, 4.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]].map(glam::DVec2::from);
+        for choice in 0..8 {
+            let middles = [0, 1, 2].map(|k| (choice >> k & 1 == 1).then_some(3 + k));
+            let mut parts = Vec::new();
+            split([0, 1, 2], middles, &mut parts);
+            let areas = parts.iter().map(|t| {
+                let [a, b, c] = t.map(|k| at[k as usize]);
+                (b - a).perp_dot(c - a)
+            });
+            let areas: Vec<f64> = areas.collect();
+            assert!(areas.iter().all(|&area| area > 0.0), "{parts:?}");
+            assert!((areas.iter().sum::<f64>() - 16.0).abs() < 1e-12, "{parts:?}");
+            // No corner lies in the middle of a side.
+            let used: FxHashSet<[u32; 2]> = parts.iter().flat_map(|&t| sides(t)).collect();
+            for (side, middle) in sides([0, 1, 2]).into_iter().zip(middles) {
+                assert_eq!(used.contains(&side), middle.is_none());
+            }
+        }
+    }
+}

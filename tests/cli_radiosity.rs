@@ -1,0 +1,102 @@
+//! `nusselt radiosity` on the command line.
+#![cfg(feature = "cli")]
+
+mod common;
+
+use common::program::Folder;
+use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().expect("a number")
+}
+
+#[test]
+fn the_cornell_box_is_solved_into_files_of_all_kinds() {
+    let folder = Folder::new("radiosity");
+    let line = "radiosity box.obj --patch 300 --tolerance 1e-2 --until 0.02 --depth 1 --detail 0.2";
+    let summary = folder.parsed(&format!("{line} -o a.glb -o a.ply -o a.html -o a.json --json"));
+    assert_eq!(summary["schema"], "nusselt.radiosity/1");
+    assert!(number(&summary["unshot"]) <= 0.02 && number(&summary["defect"]) < 1e-12, "{summary}");
+    let table: Value = serde_json::from_str(&folder.read("a.json")).expect("JSON");
+    let patches = table["patches"].as_array().expect("rows");
+    assert_eq!(patches.len() as u64, summary["patches"].as_u64().expect("a count"));
+    assert!(patches.iter().all(|patch| number(&patch["radiosity"][0]) >= number(&patch["emission"][0])));
+    let count = |file: &str| folder.parsed(&format!("info {file} --json"))["polygons"].as_u64().expect("a count");
+    assert_eq!(count("a.glb"), count("a.ply"));
+    assert!(count("a.ply") >= 2 * patches.len() as u64);
+    let page = folder.read("a.html");
+    assert!(page.starts_with("<!DOCTYPE html>") && !page.contains("{{") && page.trim_end().ends_with("</html>"));
+    shows_itself(&folder, "a.html");
+    // Two threads or one, and the same files.
+    folder.run(&format!("{line} --threads 1 -o b.ply"), 0);
+    assert_eq!(
+        std::fs::read(folder.path("a.ply")).expect("a file"),
+        std::fs::read(folder.path("b.ply")).expect("a file")
+    );
+}
+
+/// Opens a page in Chromium, if that is there.
+fn shows_itself(folder: &Folder, page: &str) {
+    let Some(browser) = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]
+        .into_iter()
+        .find(|path| Path::new(path).exists())
+    else {
+        eprintln!("SKIPPED: there is no Chromium to show {page} with; install it to have the page tested");
+        return;
+    };
+    let profile = folder.path("profile");
+    let output = Command::new(browser)
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader"])
+        .args(["--enable-unsafe-swiftshader", "--no-first-run", "--disable-background-networking", "--disable-quic"])
+        .args(["--disable-component-update", "--disable-sync", "--virtual-time-budget=10000", "--dump-dom"])
+        .arg(format!("--user-data-dir={}", profile.display()))
+        .arg(format!("file://{}", folder.path(page).display()))
+        .output()
+        .expect("the browser runs");
+    let shown = String::from_utf8_lossy(&output.stdout);
+    let state = shown.split("data-state=\"").nth(1).and_then(|rest| rest.split('"').next());
+    assert_eq!(state, Some("drawn"), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+#[test]
+fn a_kept_state_is_gone_on_from() {
+    let folder = Folder::new("radiosity-state");
+    let line = "radiosity box.obj --patch 300 --tolerance 1e-2";
+    folder.run(&format!("{line} --until 0.3 --state a.state"), 0);
+    let first = folder.parsed(&format!("{line} --until 0.05 --state a.state --resume -o a.json --json"));
+    folder.run(&format!("{line} --until 0.05 -o b.json"), 0);
+    assert_eq!(folder.read("a.json"), folder.read("b.json"));
+    assert!(number(&first["unshot"]) <= 0.05);
+    for (change, what) in [
+        ("radiosity box.obj --patch 200 --tolerance 1e-2", "other patches"),
+        ("radiosity box.obj --patch 300 --tolerance 1e-3", "another tolerance"),
+    ] {
+        let error = folder.run(&format!("{change} --state a.state --resume"), 1);
+        assert!(error.contains(what), "{error}");
+    }
+    std::fs::write(folder.path("a.state"), "{\"schema\":").expect("written");
+    let error = folder.run(&format!("{line} --state a.state --resume"), 1);
+    assert!(error.contains("a.state") && error.contains("start anew"), "{error}");
+}
+
+#[test]
+fn what_is_wrong_is_said_in_one_line() {
+    let folder = Folder::new("radiosity-wrong");
+    std::fs::write(folder.path("dark.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    for (line, code, what) in [
+        ("radiosity box.obj --patch 0", 2, "above 0"),
+        ("radiosity box.obj --until 0", 2, "1e-13 to 1"),
+        ("radiosity box.obj --until 0.1 --full", 2, "--full"),
+        ("radiosity box.obj --resume", 2, "--state"),
+        ("radiosity box.obj -o a.stl", 2, ".html"),
+        ("radiosity box.obj -o a.glb -o a.glb", 2, "twice"),
+        ("radiosity box.obj --patch 1e-3", 1, "take a longer edge"),
+        ("radiosity dark.obj", 1, "no polygon emits"),
+        ("radiosity none.obj", 1, "none.obj"),
+    ] {
+        let error = folder.run(line, code);
+        assert!(error.contains(what), "{line}: {error}");
+    }
+}
