@@ -19,6 +19,7 @@ mod hidden;
 mod mesh;
 mod options;
 mod pair;
+mod partly;
 mod points;
 mod reciprocity;
 mod row;
