@@ -40,11 +40,12 @@ fn exchange_is_the_same_both_ways_where_it_is_integrated() {
     }
 }
 
-/// The factor from the unit square below to the one above it at height 1, by 40^4 rays, those through a plate left out.
+/// The factor from the unit square below to the one above it at height 1, by rays from 40^2 places to 43^2, those through a plate left out.
 fn by_rays(plates: &[Vec<[f64; 3]>]) -> f64 {
-    const COUNT: usize = 40;
-    let places = || (0..COUNT).map(|k| (k as f64 + 0.5) / COUNT as f64);
-    let squared = || places().flat_map(|u| places().map(move |v| (u, v)));
+    // Not the same number, or rays would pass planes between in a grid.
+    const COUNTS: [usize; 2] = [40, 43];
+    let places = |count: usize| (0..count).map(move |k| (k as f64 + 0.5) / count as f64);
+    let squared = |count: usize| places(count).flat_map(move |u| places(count).map(move |v| (u, v)));
     let plates: Vec<Vec<DVec3>> = plates.iter().map(|plate| plate.iter().map(|&p| p.into()).collect()).collect();
     let is_hit = |x: DVec3, y: DVec3, plate: &[DVec3]| {
         let normal = (plate[1] - plate[0]).cross(plate[2] - plate[1]);
@@ -54,13 +55,13 @@ fn by_rays(plates: &[Vec<[f64; 3]>]) -> f64 {
         from * to < 0.0 && (0..plate.len()).all(|k| side(k) >= 0.0)
     };
     let mut sum = 0.0;
-    for (x, y) in squared().flat_map(|x| squared().map(move |y| (x, y))) {
+    for (x, y) in squared(COUNTS[0]).flat_map(|x| squared(COUNTS[1]).map(move |y| (x, y))) {
         let (x, y) = (DVec3::new(x.0, x.1, 0.0), DVec3::new(y.0, y.1, 1.0));
         if !plates.iter().any(|plate| is_hit(x, y, plate)) {
             sum += 1.0 / (PI * x.distance_squared(y).powi(2));
         }
     }
-    sum / (COUNT as f64).powi(4)
+    sum / COUNTS.map(|count| (count * count) as f64).iter().product::<f64>()
 }
 
 #[test]
@@ -68,7 +69,7 @@ fn what_several_plates_leave_is_what_rays_find() {
     let level = |[x, y]: [f64; 2], [a, b]: [f64; 2], z: f64| rectangle([x, y, z], [a, 0., 0.], [0., b, 0.]);
     let cases = [
         // At two heights, overlapping in some views.
-        vec![level([0.0, 0.0], [0.5, 0.5], 0.5), level([0.4, 0.2], [0.6, 0.5], 0.3)],
+        vec![level([0.0, 0.0], [0.513, 0.487], 0.47), level([0.4, 0.2], [0.6, 0.5], 0.3)],
         // On the floor, touching the ceiling with a corner, and each other along an edge.
         vec![
             rectangle([0.53, 0.2, 0.0], [0., 0.6, 0.], [0., 0., 0.6]),
@@ -90,8 +91,8 @@ fn what_several_plates_leave_is_what_rays_find() {
         polygons.extend(plates);
         let rows = all_rows(&exchange(&scene_of(&polygons), PatchPlan::Polygons, 1e-5));
         let (there, back) = (factor(&rows[0], 1), factor(&rows[1], 0));
-        // Of so many rays a layer as thick as the grid's step is told by chance along every edge of a shadow.
-        assert!((there - expected).abs() <= 1e-3, "{number}: {there} instead of {expected}");
+        // Rays are told by chance in a layer as thick as a step of the grids along every edge of a shadow: the worst is 2.7e-4 off.
+        assert!((there - expected).abs() <= 5e-4, "{number}: {there} instead of {expected}");
         assert!((there - back).abs() <= 2e-5, "{number}: {there} {back}");
     }
 }
