@@ -37,13 +37,13 @@ type Weights = [f64; SUMS];
 const BESIDE: f64 = 0.999;
 
 /// A rule on the unit square.
-struct Rule {
+pub(super) struct Rule {
     points: Vec<([f64; 2], Weights)>,
 }
 
 impl Rule {
     /// Degree 3, against the middle.
-    fn first() -> Self {
+    pub(super) fn first() -> Self {
         let g = 1.0 / 3.0_f64.sqrt();
         let mut rule = Self { points: Vec::new() };
         rule.add([0.0, 0.0], &[(1, 1.0), (2, 1.0), (3, 1.0)]);
@@ -54,7 +54,7 @@ impl Rule {
     }
 
     /// Degrees 7, 5, and 3 twice.
-    fn genz_malik() -> Self {
+    pub(super) fn genz_malik() -> Self {
         let (l2, l3, l5) = ((9.0_f64 / 70.0).sqrt(), 0.9_f64.sqrt(), (9.0_f64 / 19.0).sqrt());
         let ratio = l2 * l2 / (l3 * l3);
         // Of degree 3: four points that have a mean square of 1 / 3 with the middle.
@@ -107,6 +107,46 @@ impl Rule {
             self.add([u * node, v * node], &[(sum, weight)]);
         }
         self.add([u * BESIDE, v * BESIDE], &[(sum, -1.0)]);
+    }
+}
+
+/// What a rule tells of one integrand over a quadrilateral.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sample {
+    /// The integral divided by the given area.
+    pub(super) value: f64,
+    pub(super) error: f64,
+    /// True if the quadrilateral is to be halved across its first side.
+    pub(super) halve_first: bool,
+}
+
+impl Rule {
+    /// How many points it takes.
+    pub(super) fn count(&self) -> usize {
+        self.points.len()
+    }
+
+    pub(super) fn sample(&self, corners: [DVec3; 4], area: f64, mut f: impl FnMut(DVec3) -> f64) -> Sample {
+        let [a, b, c, d] = corners;
+        let mut sums = [0.0; SUMS];
+        for &([u, v], weights) in &self.points {
+            let density = (b - a).lerp(c - d, v).cross((d - a).lerp(c - b, u)).length() / area;
+            let value = f(a.lerp(b, u).lerp(d.lerp(c, u), v)) * density;
+            sums.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * value);
+        }
+        let halve_first = halves_first(corners, [sums[4].abs(), sums[5].abs()]);
+        Sample { value: sums[0], error: estimate(&sums), halve_first }
+    }
+}
+
+/// Whether a quadrilateral is halved across its first side, by the differences along either.
+fn halves_first([a, b, c, d]: [DVec3; 4], differences: [f64; 2]) -> bool {
+    let sizes = [a.distance(b).max(d.distance(c)), a.distance(d).max(b.distance(c))];
+    // Where there are no differences, across the longer sides.
+    match differences[0].total_cmp(&differences[1]) {
+        Ordering::Greater => true,
+        Ordering::Less => false,
+        Ordering::Equal => sizes[0] >= sizes[1],
     }
 }
 
@@ -281,13 +321,7 @@ where
             Part { column, value: sums[0], error: estimate(&sums) }
         });
         let parts: Vec<Part> = parts.collect();
-        let sizes = [a.distance(b).max(d.distance(c)), a.distance(d).max(b.distance(c))];
-        // Where there are no differences, across the longer sides.
-        let halve_first = match differences[0].total_cmp(&differences[1]) {
-            Ordering::Greater => true,
-            Ordering::Less => false,
-            Ordering::Equal => sizes[0] >= sizes[1],
-        };
+        let halve_first = halves_first(corners, differences);
         let worst = parts.iter().fold(0.0, |worst: f64, part| worst.max(part.error));
         Ok(Region { corners, parts, halve_first, worst })
     }
@@ -344,7 +378,7 @@ fn layers([a, b, c, d]: [DVec3; 4]) -> Vec<[DVec3; 4]> {
 }
 
 /// The halves of a quadrilateral, cut across its first or its second side.
-fn halves([a, b, c, d]: [DVec3; 4], first: bool) -> [[DVec3; 4]; 2] {
+pub(super) fn halves([a, b, c, d]: [DVec3; 4], first: bool) -> [[DVec3; 4]; 2] {
     if first {
         let (low, high) = (a.lerp(b, 0.5), d.lerp(c, 0.5));
         [[a, low, high, d], [low, b, c, high]]

@@ -5,15 +5,13 @@ use super::blockers::{Around, Blockers, Seen};
 use super::contacts::parts;
 use super::cubature::{Add, Cubature, Division, Scratch};
 use super::element::{Element, Elements};
-use super::hidden::{HiddenSpace, Target};
+use super::partly::{Partly, PartlySpace};
 use super::row::Share;
 use super::seen::{Columns, LookSpace, Looker};
 use super::shaft::Lies;
 use super::shape::clip;
 use super::{Sides, contour, pair};
-use crate::integral::Receiver;
 use glam::DVec3;
-use std::convert::Infallible;
 use std::ops::Range;
 
 /// The part of the tolerance that entries which take no views may use up.
@@ -27,9 +25,7 @@ const MOST_HALVINGS: u32 = 3;
 pub(super) struct RowSpace {
     look: LookSpace,
     scratch: Scratch,
-    hidden: HiddenSpace,
-    /// For integrals of one column.
-    single: Scratch,
+    hidden: PartlySpace,
     around: Option<Around>,
     /// The element in parts within which what is seen changes steadily.
     parts: Vec<Vec<DVec3>>,
@@ -60,8 +56,7 @@ impl RowSpace {
         Self {
             look: LookSpace::default(),
             scratch: Scratch::new(columns),
-            hidden: HiddenSpace::default(),
-            single: Scratch::new(1),
+            hidden: PartlySpace::default(),
             around: None,
             parts: Vec::new(),
             found,
@@ -242,40 +237,34 @@ impl ElementRows<'_> {
         let elements = self.blockers.elements;
         let from = &elements.all[number as usize];
         let frame = &elements.frames[from.facet as usize];
-        let receiver = Receiver::new(frame.normal);
-        let RowSpace { hidden, single, around: Some(around), found, parts, .. } = &mut *space else { return };
+        let RowSpace { hidden, around: Some(around), found, parts, .. } = &mut *space else { return };
         let partly: Vec<u32> = elements.of_patch[column as usize]
             .iter()
             .copied()
             .filter(|&element| found.seen[element as usize] == Seen::Partly)
             .collect();
+        let count = partly.len();
         let mut sum = Share::default();
         for &element in &partly {
-            let target = &elements.all[element as usize];
+            let to = &elements.all[element as usize];
             let Range { start, end } = found.between[element as usize];
             let blockers = found.facets[start as usize..end as usize]
                 .iter()
                 .map(|&facet| (&self.blockers.facets.all[facet as usize].ring[..], &elements.frames[facet as usize]));
-            let target = Target {
-                element: target,
-                frame: &elements.frames[target.facet as usize],
-                horizon: (around.facet_lies(target.facet) == Lies::Across).then_some(frame),
-                receiver,
-                blockers: blockers.collect(),
+            let partly = Partly {
+                from,
+                from_frame: frame,
+                parts,
+                to,
+                to_frame: &elements.frames[to.facet as usize],
+                has_horizon: [around.facet_lies(to.facet), around.lies(to.facet)].map(|lies| lies == Lies::Across),
+                blockers: &blockers.collect::<Vec<_>>(),
             };
-            hidden.start(&target);
-            let look = |point: DVec3, add: Add<'_>| {
-                add(0, target.factor(point, hidden));
-                Ok::<(), Infallible>(())
-            };
-            let allowed = allowed / partly.len() as f64;
-            let mut cubature = Cubature { parts, area: from.area, allowed, scratch: single, look };
-            let Ok(means) = cubature.adaptive(self.most_views);
+            let allowed = allowed / count as f64;
+            let share = partly.integrate(allowed, self.most_views, hidden);
             found.seen[element as usize] = Seen::Integrated;
-            for part in means.parts {
-                sum.factor += part.value.max(0.0);
-                sum.error += part.error;
-            }
+            sum.factor += share.factor.max(0.0);
+            sum.error += share.error;
         }
         space.add(column, sum);
     }

@@ -20,6 +20,7 @@ mod mesh;
 mod meshed;
 mod options;
 mod pair;
+mod partly;
 mod points;
 mod reciprocity;
 mod row;

@@ -31,6 +31,16 @@ impl Frame {
         self.origin + self.u * p.x + self.v * p.y
     }
 
+    /// The coordinates of any point, with its height over the plane as the third.
+    pub(super) fn local(&self, p: DVec3) -> DVec3 {
+        self.turned(p - self.origin)
+    }
+
+    /// A vector along its coordinates and its normal.
+    pub(super) fn turned(&self, v: DVec3) -> DVec3 {
+        DVec3::new(v.dot(self.u), v.dot(self.v), v.dot(self.normal))
+    }
+
     /// The unit vectors along its coordinates.
     pub(super) fn axes(&self) -> (DVec3, DVec3) {
         (self.u, self.v)
