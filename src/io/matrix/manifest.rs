@@ -1,7 +1,7 @@
 //! What a file of rows belongs to.
 
 use super::super::digest::Digest;
-use super::MatrixError;
+use super::{MatrixError, record};
 use crate::factors::PatchInfo;
 use crate::scene::{Scene, Shape, Side};
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use std::fmt::Display;
 use std::ops::Range;
 
 /// The schema's name.
-pub const MANIFEST_SCHEMA: &str = "nusselt.form-factors-rows/1";
+pub const MANIFEST_SCHEMA: &str = "nusselt.form-factors-rows/2";
 
 /// What is computed: the rows of a matrix, of a scene in patches, with some options.
 #[derive(Clone, Debug)]
@@ -76,7 +76,7 @@ pub struct Manifest {
     pub options: BTreeMap<String, String>,
     /// How many patches there are.
     pub patches: u32,
-    /// A digest of their names, polygons and areas.
+    /// A digest of their names, polygons, areas and shapes.
     pub patches_digest: Digest,
     /// The first row, and one more than the last.
     pub rows: [u32; 2],
@@ -111,7 +111,7 @@ impl Manifest {
         if self.scene != other.scene {
             all.push("the scene is another one".to_owned());
         } else if self.patches_digest != other.patches_digest && self.patches == other.patches {
-            all.push("names, polygons or areas of patches are others".to_owned());
+            all.push("names, polygons, areas or shapes of patches are others".to_owned());
         }
         all
     }
@@ -158,7 +158,8 @@ pub fn scene_digest(scene: &Scene) -> Digest {
 }
 
 pub(super) fn patches_digest(patches: &[PatchInfo]) -> Digest {
-    patches.iter().fold(Digest::EMPTY, |digest, PatchInfo { name, polygon, area }| {
-        digest.with_text(name).with(&polygon.0.to_le_bytes()).with(&area.to_bits().to_le_bytes())
+    patches.iter().fold(Digest::EMPTY, |digest, patch| {
+        let bytes = record::of_patch(patch);
+        digest.with(&(bytes.len() as u64).to_le_bytes()).with(&bytes)
     })
 }
