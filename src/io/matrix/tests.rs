@@ -72,7 +72,7 @@ fn patches() -> Vec<PatchInfo> {
 
 /// None without area; otherwise one piece or two, with a normal or without.
 fn shape(k: u32) -> Option<PatchShape> {
-    let at = |x: u32, y: f64| DVec3::new(f64::from(x) / 7.0, y, -f64::from(k) * 1e-9);
+    let at = |x: u32, y: f64| DVec3::new(f64::from(x) / 7.0, y, -f64::from(k) / 8.0);
     let piece = |x: u32| vec![at(x, 0.0), at(x + 1, 0.0), at(x, 0.1)];
     let pieces = (0..1 + k % 2).map(|x| piece(3 * x)).collect();
     let normal = (k % 3 > 0).then_some(DVec3::new(0.6, 0.0, -0.8));
@@ -238,7 +238,7 @@ fn patches_are_told_apart_in_the_order_of_rows() {
     assert_eq!(lines.len(), 1 + COUNT as usize);
     assert_eq!(lines[0], "row,name,polygon,area,center_x,center_y,center_z,normal_x,normal_y,normal_z");
     assert_eq!(lines[1], "0,\"p0, \"\"0\"\"\",0,0,,,,,,");
-    assert_eq!(lines[4], "3,\"p3, \"\"3\"\"\",1,1,0.42857142857142855,0.05,-3e-9,,,");
+    assert_eq!(lines[4], "3,\"p3, \"\"3\"\"\",1,1,0.42857142857142855,0.05,-0.375,,,");
     assert!(lines[2].ends_with(",0.6,0,-0.8"), "{}", lines[2]);
     // A group for each, empty for what has no area.
     let drawn = written("a.obj");

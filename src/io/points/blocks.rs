@@ -74,7 +74,7 @@ impl<R: Read> Blocks<R> {
                 let mark = self.buffer.len() - without_mark(&self.buffer).len();
                 self.buffer.drain(..mark);
             }
-            if self.buffer.is_empty() {
+            if self.buffer.is_empty() && self.is_at_end {
                 return Ok(None);
             }
             if self.is_at_end {
@@ -245,6 +245,11 @@ mod tests {
         let mut blocks = Blocks::new(io::repeat(b' '));
         assert!(matches!(blocks.next(), Ok(Some(Block::TooLong(1)))));
         assert!(matches!(blocks.next(), Ok(None)));
+    }
+
+    #[test]
+    fn a_mark_that_comes_alone_is_no_end() {
+        assert_eq!(in_blocks(b"\xef\xbb\xbfa", 3), [Ok((1, "a".to_owned()))]);
     }
 
     #[test]
