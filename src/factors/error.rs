@@ -28,18 +28,6 @@ pub enum ExchangeError {
     /// There are more patches than can be numbered.
     #[error("there are more than 4 billion patches; take a longer edge")]
     TooManyPatches,
-    /// The area of a patch is beyond what numbers hold.
-    #[error(
-        "the area of patch {patch} (polygon {polygon}) is {area:e} in square scene units, beyond the range of numbers; scale the scene"
-    )]
-    BadArea {
-        /// The patch.
-        patch: usize,
-        /// The polygon that it is, or is part of.
-        polygon: PolygonId,
-        /// What comes out: infinite, or 0 where it is not.
-        area: f64,
-    },
     /// There is no patch of that number.
     #[error("there is no patch {patch}: there are {count}, numbered from 0")]
     UnknownPatch {

@@ -49,7 +49,7 @@ impl Exchange {
     /// Prepares the patches of a scene: about n log n time.
     ///
     /// # Errors
-    /// If an option is out of range, a mesh too fine, or an area no number.
+    /// If an option is out of range or a mesh too fine.
     pub fn new(scene: &Scene, plan: PatchPlan, options: ExchangeOptions) -> Result<Self, ExchangeError> {
         let is_positive = |x: f64| x.is_finite() && x > 0.0;
         if !is_positive(options.tolerance) {
@@ -65,11 +65,7 @@ impl Exchange {
         let trees = elements.of_facet.iter().map(|facet| ElementTree::of(&elements.all, facet)).collect();
         let mut patches = elements.patches.clone();
         for (number, patch) in patches.iter_mut().enumerate() {
-            let area = facets.placement.global_area(patch.area);
-            if !area.is_finite() || (area == 0.0 && patch.area > 0.0) {
-                return Err(ExchangeError::BadArea { patch: number, polygon: patch.polygon, area });
-            }
-            patch.area = area;
+            patch.area = facets.placement.global_area(patch.area);
             patch.shape = elements.shape(number, facets.placement);
         }
         Ok(Self { facets, elements, trees, options, patches })

@@ -18,13 +18,8 @@ impl Placement {
         // the origin than it is large is moved there. All differences are exact: none is of numbers of which one is more than twice the other
         // (Sterbenz 1974).
         let origin = |low: f64, high: f64| {
-            if low > 0.0 && 0.5 * high <= low {
-                low
-            } else if high < 0.0 && 0.5 * low >= high {
-                high
-            } else {
-                0.0
-            }
+            let is_far = if low > 0.0 { 0.5 * high <= low } else { high < 0.0 && 0.5 * low >= high };
+            if is_far { low } else { 0.0 }
         };
         let origin = DVec3::new(origin(low.x, high.x), origin(low.y, high.y), origin(low.z, high.z));
         let most = (low - origin).abs().max((high - origin).abs()).max_element();
@@ -45,7 +40,7 @@ impl Placement {
         p / self.scale + self.origin
     }
 
-    /// An area in the scene's unit: infinite or 0 where numbers do not hold it.
+    /// An area in the scene's unit: infinite, or 0, where numbers do not hold it.
     pub(super) fn global_area(self, area: f64) -> f64 {
         area / self.scale / self.scale
     }

@@ -10,7 +10,8 @@ pub struct PatchInfo {
     pub name: String,
     /// The polygon that it is, or is part of; of an object the first one.
     pub polygon: PolygonId,
-    /// Its area, in square scene units; 0 for a degenerate face.
+    /// Its area, in square scene units; 0 for a degenerate face. Where numbers do not hold it, with sides above 1e154 or below 1e-162, it is infinite or 0,
+    /// and factors are what they are all the same.
     pub area: f64,
     /// Where it is; `None` if it has no area.
     pub shape: Option<PatchShape>,

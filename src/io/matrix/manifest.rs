@@ -43,13 +43,18 @@ impl<'a> MatrixJob<'a> {
     /// What a file of these rows says of itself. Takes time in proportion to the scene.
     ///
     /// # Errors
-    /// If there are no such rows, or more patches than 32 bits number.
+    /// If there are no such rows, more patches than 32 bits number, or an area that no number tells.
     pub fn manifest(&self) -> Result<Manifest, MatrixError> {
         let too_many = |_| MatrixError::TooManyPatches { count: self.patches.len() };
         let count = u32::try_from(self.patches.len()).map_err(too_many)?;
         let rows = self.rows.clone().unwrap_or(0..count);
         if rows.end > count || (rows.start >= rows.end && rows != (0..count)) {
             return Err(MatrixError::BadRange { rows, count });
+        }
+        let is_bad = |patch: &PatchInfo| !patch.area.is_finite() || (patch.area == 0.0 && patch.shape.is_some());
+        if let Some(patch) = self.patches.iter().position(is_bad) {
+            let PatchInfo { polygon, area, .. } = self.patches[patch];
+            return Err(MatrixError::BadArea { patch, polygon, area });
         }
         Ok(Manifest {
             schema: MANIFEST_SCHEMA.to_owned(),

@@ -443,6 +443,11 @@ fn rows_and_ranges_that_cannot_be_are_refused() {
     for rows in [0..8, 3..3, 8..9, reversed] {
         assert!(matches!(create("m.rows", &good.clone().with_rows(rows)), Err(MatrixError::BadRange { count: 7, .. })));
     }
+    for area in [f64::INFINITY, f64::NAN, 0.0] {
+        let mut huge = patches.clone();
+        huge[3].area = area;
+        assert!(matches!(create("m.csv", &job(&scene, &huge)), Err(MatrixError::BadArea { patch: 3, .. })), "{area}");
+    }
     assert_eq!(folder.names(), [""; 0]);
     let mut writer = create("m.csv", &good).expect("a new file");
     assert!(matches!(writer.row(&row(1)), Err(MatrixError::OutOfOrder { expected: 0, found: 1 })));

@@ -183,6 +183,7 @@ fn refused(scene: &Path, error: MatrixError) -> Failure {
             Failure::Usage(error.to_string())
         }
         MatrixError::WouldOverwrite { .. } | MatrixError::NoParts => Failure::Usage(error.to_string()),
+        MatrixError::BadArea { .. } => Failure::about(scene, &error),
         MatrixError::Unfinished { path } => {
             let path = path.display();
             Failure::Work(format!("{path} is there from an unfinished run; go on with --resume, or delete it"))
