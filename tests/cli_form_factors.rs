@@ -348,7 +348,10 @@ fn patches_are_placed_in_every_format() {
         let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap_or(f64::NAN)).collect();
         let told = |name: &str| [0, 1, 2].map(|axis| number(&patch[name][axis]));
         assert_eq!((fields[0], fields[2]), (k as f64, number(&patch["polygon"])));
-        assert!(fields[3] == 0.25 && fields[4..7] == told("center") && fields[7..] == told("normal"), "{line} {patch}");
+        assert!(
+            fields[3..4] == [0.25] && fields[4..7] == told("center") && fields[7..] == told("normal"),
+            "{line} {patch}"
+        );
         let corners = patch["boundary"].as_array().expect("one convex piece");
         let mean = [0, 1, 2].map(|axis| corners.iter().map(|p| number(&p[axis])).sum::<f64>() / 4.0);
         assert_eq!((corners.len(), mean), (4, told("center")));

@@ -116,7 +116,9 @@ pub(crate) fn keep<'a>(files: &[PathBuf], outputs: impl Iterator<Item = &'a Path
 
 /// Removes what killed runs left of writing an output.
 pub(crate) fn clear(output: &Path) {
-    written(output).iter().for_each(|path| remove_abandoned(path));
+    for path in written(output) {
+        remove_abandoned(&path);
+    }
 }
 
 /// True if both names lead to one file, as far as that can be told before it is written.

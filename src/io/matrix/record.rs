@@ -61,7 +61,9 @@ pub(super) fn of_patch(patch: &PatchInfo) -> Vec<u8> {
     bytes.extend((pieces.len() as u32).to_le_bytes());
     for piece in pieces {
         bytes.extend((piece.len() as u32).to_le_bytes());
-        piece.iter().for_each(|&p| point(&mut bytes, p));
+        for &p in piece {
+            point(&mut bytes, p);
+        }
     }
     bytes
 }

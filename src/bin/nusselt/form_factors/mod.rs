@@ -70,7 +70,7 @@ pub(crate) struct FormFactors {
     /// [default: CSV on standard output; with --json nothing but the summary]
     #[arg(short, long, value_name = "FILE", value_parser = options::parse_output)]
     output: Option<PathBuf>,
-    /// Write the patches to this file, in the order of rows and columns: .csv (row,name,polygon,area, center and normal), or .obj with a group patch_I
+    /// Write the patches to this file, in the order of rows and columns: .csv (row,name,polygon,area, center and normal), or .obj with a group
     /// for each; before any row is computed
     #[arg(long, value_name = "FILE", value_parser = options::parse_patches)]
     patches: Option<PathBuf>,
