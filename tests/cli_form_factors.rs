@@ -255,7 +255,7 @@ fn the_summary_tells_closure_reciprocity_estimates_and_times() {
     ] {
         assert_eq!(summary[name], expected, "{name}");
     }
-    assert!(number(&summary["worst_closure"]) < 1e-12 && number(&summary["worst_closure_raw"]) < 1e-3);
+    assert!(number(&summary["worst_closure"]) < 1e-12 && number(&summary["worst_residue"]) < 1e-3);
     assert!((0.0..1e-4).contains(&number(&summary["largest_estimate"])));
     assert!(number(&summary["background_mean"]).abs() < 1e-12);
     let reciprocity = &summary["reciprocity"];
@@ -336,6 +336,64 @@ fn a_run_that_was_killed_goes_on_to_the_same_bytes() {
 }
 
 #[test]
+fn patches_are_placed_in_every_format() {
+    let folder = Folder::new("patches");
+    folder.run("form-factors cube.obj --patch 0.5 -o m.json --patches p.csv");
+    let patches = folder.json("m.json")["patches"].as_array().expect("patches").clone();
+    let table = String::from_utf8(folder.read("p.csv")).expect("UTF-8");
+    let mut lines = table.lines();
+    assert_eq!(lines.next(), Some("row,name,polygon,area,center_x,center_y,center_z,normal_x,normal_y,normal_z"));
+    assert_eq!(patches.len(), 24);
+    for (k, (line, patch)) in lines.zip(&patches).enumerate() {
+        let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap_or(f64::NAN)).collect();
+        let told = |name: &str| [0, 1, 2].map(|axis| number(&patch[name][axis]));
+        assert_eq!((fields[0], fields[2]), (k as f64, number(&patch["polygon"])));
+        assert!(
+            fields[3..4] == [0.25] && fields[4..7] == told("center") && fields[7..] == told("normal"),
+            "{line} {patch}"
+        );
+        let corners = patch["boundary"].as_array().expect("one convex piece");
+        let mean = [0, 1, 2].map(|axis| corners.iter().map(|p| number(&p[axis])).sum::<f64>() / 4.0);
+        assert_eq!((corners.len(), mean), (4, told("center")));
+    }
+    // The fronts of a room show to its middle.
+    assert_eq!((&patches[0]["normal"], &patches[0]["center"]), (&json!([0.0, 0.0, 1.0]), &json!([0.25, 0.25, 0.0])));
+    // The drawing has them in the same order: read as a scene, each polygon is a patch.
+    folder.run("form-factors cube.obj --patch 0.5 --rows 0..1 --patches p.obj -o a.rows");
+    folder.run("form-factors p.obj -o again.json");
+    let again = folder.json("again.json");
+    for (k, patch) in again["patches"].as_array().expect("patches").iter().enumerate() {
+        assert_eq!(patch["name"], json!(format!("patch_{k}")));
+        assert_eq!((&patch["boundary"], &patch["area"]), (&patches[k]["boundary"], &patches[k]["area"]));
+    }
+    folder.run("form-factors cube.obj --patch 0.5 --rows 1..24 -o b.rows");
+    folder.run("form-factors merge a.rows b.rows -o m.npy --patches merged.csv");
+    assert_eq!(String::from_utf8(folder.read("merged.csv")).expect("UTF-8"), table);
+}
+
+#[test]
+fn areas_beyond_numbers_leave_nothing_behind() {
+    let folder = Folder::new("area");
+    let (vertices, faces) = CUBE.split_once('f').expect("faces after vertices");
+    folder.write("huge.obj", &format!("{}f{faces}", vertices.replace('1', "1e200")));
+    let before = folder.names();
+    let message = folder.fail("form-factors huge.obj -o m.csv", 1);
+    assert!(message.contains("huge.obj: the area of patch 0 (polygon 0) is inf"), "{message}");
+    assert_eq!(folder.names(), before);
+}
+
+#[test]
+fn what_a_killed_run_left_unnamed_is_removed() {
+    let folder = Folder::new("left");
+    let left = [".m.npy.1-2.tmp", ".m.npy.partial.999999999-0.tmp", ".m.npy.manifest.json.77-1.tmp", ".p.csv.7-0.tmp"];
+    for name in left.iter().chain(&[".n.npy.1-2.tmp", ".m.npy.tmp"]) {
+        folder.write(name, "left");
+    }
+    folder.run("form-factors cube.obj -o m.npy --resume --patches p.csv");
+    assert_eq!(folder.names(), [".m.npy.tmp", ".n.npy.1-2.tmp", "cube.obj", "m.npy", "p.csv"]);
+}
+
+#[test]
 fn another_run_is_not_resumed() {
     let folder = Folder::new("changed");
     folder.run("scene city --polygons 120 --seed 1 -o city.obj");
@@ -382,6 +440,11 @@ fn wrong_command_lines_are_refused_in_one_line() {
         ("cube.obj --tolerance -1e-4", "above 0"),
         ("cube.obj --tolerance nan", "above 0"),
         ("cube.obj --certify=soon", "kernel and rational"),
+        ("cube.obj --patches x.npy", ".csv or .obj"),
+        ("cube.obj --patches cube.obj", "would overwrite"),
+        ("cube.obj -o x.csv --patches x.csv", "the same file"),
+        ("cube.obj -o x.csv --patches ./x.csv", "the same file"),
+        ("merge cube.rows -o x.csv --patches x.csv", "the same file"),
         ("merge", "<PART>"),
         ("merge a.rows", "--output"),
         ("merge a.rows -o x.txt", ".rows"),

@@ -4,9 +4,9 @@
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write;
+use std::io::{BufRead, BufReader, Read, Write};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 /// A folder of its own for each test, with the Cornell box in it.
 struct Folder(PathBuf);
@@ -214,15 +214,88 @@ fn bad_points_are_named_by_line_and_leave_no_file() {
     let message = folder.run("point-factors box.obj --points - -o old.csv", "1 2 3 0 0 1\n1 2 3 0 0 1 77\n", 1);
     assert!(message.contains("standard input:2: there is no polygon 77"), "{message}");
     let long = format!("1 2 3 0 0 1\n{}\n1 2 x 0 0 1", "7".repeat(3 << 20));
+    folder.write("p.csv", &long);
+    let message = folder.run("point-factors box.obj --points p.csv -o old.csv", "", 1);
+    assert!(message.contains("p.csv:2: the line is longer") && message.contains("p.csv:3: z: `x`"), "{message}");
+    // What follows may not have come.
     let message = folder.run("point-factors box.obj --points - -o old.csv", &long, 1);
-    assert!(
-        message.contains("standard input:2: the line is longer") && message.contains("input:3: z: `x`"),
-        "{message}"
-    );
+    assert!(message.contains("standard input:2: the line is longer"), "{message}");
+    let in_plane = "100 50 100 0 1 0 0\n100 50 100 1 0 0 0\n";
+    folder.write("p.csv", in_plane);
+    for (points, name) in [("p.csv", "p.csv"), ("-", "standard input")] {
+        let message = folder.run(&format!("point-factors box.obj --points {points} -o old.csv"), in_plane, 1);
+        assert!(
+            message.contains(&format!("{name}:2: the normal [1, 0, 0] lies in the plane of polygon 0")),
+            "{message}"
+        );
+    }
     assert!(folder.run("point-factors box.obj --points . ", "", 1).contains("not a regular file"));
     assert_eq!(folder.read("old.csv"), "old");
     let files: Vec<_> = fs::read_dir(&folder.0).expect("a folder").map(|f| f.expect("a file").file_name()).collect();
     assert!(files.iter().all(|name| !name.to_string_lossy().contains(".tmp")), "{files:?}");
+}
+
+/// Starts a run that is asked and answers.
+fn ask(folder: &Folder) -> (Child, ChildStdin, BufReader<ChildStdout>) {
+    let program = Command::new(env!("CARGO_BIN_EXE_nusselt"))
+        .args("point-factors box.obj --points -".split(' '))
+        .current_dir(&folder.0)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn();
+    let mut program = program.expect("the program runs");
+    let (stdin, stdout) = (program.stdin.take().expect("a pipe"), program.stdout.take().expect("a pipe"));
+    (program, stdin, BufReader::new(stdout))
+}
+
+#[test]
+fn points_are_answered_before_the_next_are_asked() {
+    let folder = Folder::new("ask");
+    let (mut program, mut stdin, mut answers) = ask(&folder);
+    let mut line = String::new();
+    for k in 0..4 {
+        // In two pieces, and none after it: this would wait for ever if more were asked for.
+        stdin.write_all(b"278 273 1").expect("it reads");
+        stdin.write_all(b" 0 0 1\n").expect("it reads");
+        while k == 0 && line != "point,name,factor\n" {
+            line.clear();
+            answers.read_line(&mut line).expect("a header");
+        }
+        let mut sum = 0.0;
+        // Until the point has all that it sees.
+        while sum < 1.0 - 1e-9 {
+            line.clear();
+            answers.read_line(&mut line).expect("an answer");
+            let fields: Vec<_> = line.trim_end().split(',').collect();
+            assert_eq!(fields[0], k.to_string(), "{line}");
+            sum += fields[2].parse::<f64>().expect("a number");
+        }
+    }
+    drop(stdin);
+    line.clear();
+    assert_eq!(answers.read_line(&mut line).expect("the end"), 0, "{line}");
+    assert!(program.wait().expect("it ends").success());
+}
+
+#[test]
+fn points_before_a_bad_line_are_answered_and_the_line_is_told_at_once() {
+    let folder = Folder::new("bad-line");
+    for bad in ["1 2 x 0 0 1\n", "1 2 3 0 0 1 77\n"] {
+        let (mut program, mut stdin, mut answers) = ask(&folder);
+        stdin.write_all(format!("278 273 1 0 0 1\n{bad}").as_bytes()).expect("it reads");
+        // It ends though its input does not.
+        let mut text = String::new();
+        answers.read_to_string(&mut text).expect("UTF-8");
+        let told = lines(&text);
+        let sum: f64 = told.iter().map(|line| line.2).sum();
+        assert!(told.iter().all(|line| line.0 == 0) && (sum - 1.0).abs() < 1e-12, "{text}");
+        assert_eq!(program.wait().expect("it ends").code(), Some(1));
+        let mut message = String::new();
+        program.stderr.take().expect("a pipe").read_to_string(&mut message).expect("UTF-8");
+        assert!(message.starts_with("nusselt: standard input:2: ") && message.lines().count() == 1, "{message}");
+        drop(stdin);
+    }
 }
 
 #[test]

@@ -34,6 +34,17 @@ pub enum SurfaceError {
         /// The polygon.
         polygon: PolygonId,
     },
+    /// A normal that is to tell the side of a polygon lies in its plane.
+    #[error(
+        "the normal {normal} lies in the plane of polygon {polygon}, within 1e-6 rad, and shows neither of its sides; \
+         turn it towards the side that is meant"
+    )]
+    NoSide {
+        /// The polygon.
+        polygon: PolygonId,
+        /// The normal.
+        normal: DVec3,
+    },
     /// The position is infinite or not a number.
     #[error("the position has a coordinate that is not finite")]
     NotFinite,
@@ -66,11 +77,10 @@ impl Viewpoint {
         Ok(Self::at(scene, &foot, side))
     }
 
-    /// The same on the side of the polygon, at the piece nearest to `near`, that shows in the direction of `normal`, of any length; on the
-    /// front if the normal lies in its plane.
+    /// The same on the side of the polygon, at the piece nearest to `near`, that shows in the direction of `normal`, of any length.
     ///
     /// # Errors
-    /// As [`Viewpoint::on_surface`].
+    /// As [`Viewpoint::on_surface`]; [`SurfaceError::NoSide`] if the normal is within 1e-6 rad of the piece's plane, or no direction at all.
     pub fn on_surface_towards(
         scene: &Scene,
         polygon: PolygonId,
@@ -78,8 +88,11 @@ impl Viewpoint {
         near: DVec3,
     ) -> Result<Self, SurfaceError> {
         let front = Self::on_surface(scene, polygon, Side::Front, near)?;
-        let towards = |(piece, _, _)| unit_normal(scene, scene.piece(piece)).dot(normal / normal.abs().max_element());
-        let side = if front.surface.map(towards) < Some(0.0) { Side::Back } else { Side::Front };
+        let unit = (normal / normal.abs().max_element()).try_normalize();
+        let towards = |(piece, _, _)| unit.map(|unit| unit_normal(scene, scene.piece(piece)).dot(unit));
+        let sine = front.surface.and_then(towards).filter(|sine| sine.abs() > 1e-6);
+        let sine = sine.ok_or(SurfaceError::NoSide { polygon, normal })?;
+        let side = if sine < 0.0 { Side::Back } else { Side::Front };
         if side == Side::Front { Ok(front) } else { Self::on_surface(scene, polygon, side, near) }
     }
 

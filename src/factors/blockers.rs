@@ -207,8 +207,8 @@ impl Blockers<'_> {
         if own.is_some_and(|own| own.number == solid.number) {
             return shown == Side::Back;
         }
-        let scale = self.facets.scale;
-        let (low, high) = (solid.bounds.low * scale, solid.bounds.high * scale);
+        let placement = self.facets.placement;
+        let (low, high) = (placement.local(solid.bounds.low), placement.local(solid.bounds.high));
         let is_outside = |axis: usize| {
             from.ring.iter().all(|p| p[axis] < low[axis]) || from.ring.iter().all(|p| p[axis] > high[axis])
         };

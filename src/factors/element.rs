@@ -2,11 +2,15 @@
 
 use super::facets::Facets;
 use super::mesh;
-use super::row::PatchInfo;
-use super::shape::{Frame, area, centre, turn};
+use super::placement::Placement;
+use super::row::{PatchInfo, PatchShape};
+use super::shape::{Frame, area, centre, sides, turn};
 use super::{ExchangeError, PatchPlan};
 use crate::scene::{PieceRef, PolygonId, Scene};
 use glam::{DVec2, DVec3};
+
+/// The normals of a patch whose mean is shorter than this have no direction together.
+const CLOSED: f64 = 1e-9;
 
 /// A flat convex part of a patch.
 pub(super) struct Element {
@@ -23,6 +27,8 @@ pub(super) struct Element {
     pub(super) centre: DVec3,
     /// No corner is farther from the centre.
     pub(super) radius: f64,
+    /// What rounding of places on it may do to its factors: the distance between numbers there, over the size.
+    pub(super) rounding: f64,
     /// Points and weights that integrate polynomials of degree 3 over a parallelogram; the weights sum to the area.
     pub(super) points: Vec<(DVec3, f64)>,
 }
@@ -56,7 +62,7 @@ impl Elements {
                 PatchPlan::Polygons => {
                     let patch = found.patch(name.to_owned(), polygon.id())?;
                     polygon.pieces().for_each(|piece| {
-                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.scale));
+                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement));
                     });
                 }
                 PatchPlan::Objects => {
@@ -64,16 +70,17 @@ impl Elements {
                     let patch = known.map_or_else(|| found.patch(name.to_owned(), polygon.id()), Ok)?;
                     of_object[polygon.object().index()] = Some(patch);
                     polygon.pieces().for_each(|piece| {
-                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.scale));
+                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement));
                     });
                 }
                 PatchPlan::Mesh { longest_edge } => {
                     for piece in polygon.pieces() {
                         let outline: Vec<_> =
-                            piece.vertices().iter().map(|&id| (id, scene.vertex(id) * facets.scale)).collect();
+                            piece.vertices().iter().map(|&id| (id, facets.placement.local(scene.vertex(id)))).collect();
                         let facet = facets.of_piece[piece.id().index()];
                         let frame = &found.frames[facet as usize];
-                        let parts = mesh::elements(&outline, frame, longest_edge * facets.scale)
+                        let longest = facets.placement.local_length(longest_edge);
+                        let parts = mesh::elements(&outline, frame, longest)
                             .map_err(|mesh::TooFine| ExchangeError::TooFine { polygon: polygon.id() })?;
                         for part in parts {
                             let patch = found.patch(name.to_owned(), polygon.id())?;
@@ -89,9 +96,25 @@ impl Elements {
     fn patch(&mut self, name: String, polygon: PolygonId) -> Result<u32, ExchangeError> {
         let number = u32::try_from(self.patches.len()).ok().filter(|&number| number < u32::MAX - 2);
         let number = number.ok_or(ExchangeError::TooManyPatches)?;
-        self.patches.push(PatchInfo { name, polygon, area: 0.0 });
+        self.patches.push(PatchInfo { name, polygon, area: 0.0, shape: None });
         self.of_patch.push(Vec::new());
         Ok(number)
+    }
+
+    /// Where a patch is in the scene; `None` if it has no area.
+    pub(super) fn shape(&self, patch: usize, placement: Placement) -> Option<PatchShape> {
+        let (mut area, mut moment, mut vector) = (0.0, DVec3::ZERO, DVec3::ZERO);
+        let mut pieces = Vec::with_capacity(self.of_patch[patch].len());
+        for element in self.of_patch[patch].iter().map(|&element| &self.all[element as usize]) {
+            area += element.area;
+            moment += element.area * element.centre;
+            vector += element.area * self.frames[element.facet as usize].normal;
+            pieces.push(element.ring.iter().map(|&p| placement.global(p)).collect());
+        }
+        // Without -0.
+        let normal = (vector.length() > CLOSED * area).then(|| vector.normalize() + DVec3::ZERO);
+        let center = placement.global(moment / area) + DVec3::ZERO;
+        (area > 0.0).then_some(PatchShape { center, normal, pieces })
     }
 
     fn add(&mut self, patch: u32, facet: u32, ring: Vec<DVec3>) {
@@ -110,6 +133,7 @@ impl Elements {
             area,
             centre,
             radius: ring.iter().fold(0.0, |radius, p| p.distance(centre).max(radius)),
+            rounding: rounding(&ring, area),
             points: points_of_degree_3(&ring, &flat),
             ring,
             flat,
@@ -122,8 +146,15 @@ impl Elements {
     }
 }
 
-fn points(piece: PieceRef<'_>, scale: f64) -> Vec<DVec3> {
-    piece.points().map(|p| p * scale).collect()
+fn points(piece: PieceRef<'_>, placement: Placement) -> Vec<DVec3> {
+    piece.points().map(|p| placement.local(p)).collect()
+}
+
+/// Moved by so much, a ring with that area gains and loses a strip along its perimeter.
+fn rounding(ring: &[DVec3], area: f64) -> f64 {
+    let most = ring.iter().fold(0.0, |most: f64, p| p.abs().max_element().max(most));
+    let perimeter: f64 = sides(ring).map(|[a, b]| a.distance(b)).sum();
+    f64::EPSILON * most * perimeter / area
 }
 
 /// Four points for each quadrilateral (the product of Gauss's rule of two points, in the bilinear chart) that a convex ring falls into.
@@ -153,6 +184,6 @@ pub(super) fn quads(corners: usize) -> impl Iterator<Item = [usize; 4]> {
 impl Element {
     /// True if a point of the plane of its facet is in it.
     pub(super) fn holds(&self, p: DVec2) -> bool {
-        super::shape::sides(&self.flat).all(|[a, b]| turn(a, b, p) >= 0.0)
+        sides(&self.flat).all(|[a, b]| turn(a, b, p) >= 0.0)
     }
 }

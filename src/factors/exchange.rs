@@ -2,7 +2,7 @@
 
 use super::blockers::Blockers;
 use super::closure::{TooLarge, place};
-use super::element::Elements;
+use super::element::{Element, Elements};
 use super::element_row::{Effort, ElementRows, RowSpace};
 use super::facets::Facets;
 use super::row::{Entry, PatchInfo, Row, Share};
@@ -64,13 +64,15 @@ impl Exchange {
         let elements = Elements::of(scene, &facets, plan)?;
         let trees = elements.of_facet.iter().map(|facet| ElementTree::of(&elements.all, facet)).collect();
         let mut patches = elements.patches.clone();
-        for patch in &mut patches {
-            patch.area = patch.area / facets.scale / facets.scale;
+        for (number, patch) in patches.iter_mut().enumerate() {
+            patch.area = facets.placement.global_area(patch.area);
+            patch.shape = elements.shape(number, facets.placement);
         }
         Ok(Self { facets, elements, trees, options, patches })
     }
 
-    /// The patches, in the order of their numbers.
+    /// The patches, in the order of their numbers: of polygons, theirs; of objects, that of the first polygons of each; of a mesh, by polygon, then
+    /// by piece of the polygon, then as the mesh has them (grids along the first edge first).
     pub fn patches(&self) -> &[PatchInfo] {
         &self.patches
     }
@@ -149,8 +151,10 @@ impl Exchange {
         let mut shares: Vec<(u32, Share)> = Vec::new();
         for &element in &elements.of_patch[patch] {
             let row = rows.row(element, effort, space)?;
-            let weight = elements.all[element as usize].area / area;
-            let weighted = |share: Share| Share { factor: weight * share.factor, error: weight * share.error };
+            let Element { area: own, rounding, .. } = elements.all[element as usize];
+            let weight = own / area;
+            let weighted =
+                |share: Share| Share { factor: weight * share.factor, error: weight * (share.error + rounding) };
             shares.extend(row.into_iter().map(|(column, share)| (column, weighted(share))));
         }
         // Stable, so that sums do not depend on anything but the order of elements.

@@ -3,6 +3,7 @@
 //! What a view costs is what there is to tell apart in it (docs/performance.md). Between patches of one facet there is nothing to tell
 //! apart for the eye: the part of a facet that is seen is divided among its patches afterwards, in its plane.
 
+use super::placement::Placement;
 use super::shaft::Lies;
 use crate::bvh::{self, SceneBvh, Solid};
 use crate::contour::SceneOrder;
@@ -16,8 +17,8 @@ pub(super) struct Facets {
     pub(super) all: Vec<Facet>,
     /// The facet that each piece of the scene is part of.
     pub(super) of_piece: Vec<u32>,
-    /// The power of two by which all coordinates are multiplied, so that squares of lengths neither overflow nor vanish.
-    pub(super) scale: f64,
+    /// Where they are: all coordinates here are local to it.
+    pub(super) placement: Placement,
     /// How each facet lies to the plane of each, row by row of planes, if there are few enough to keep that.
     lies: Vec<Lies>,
 }
@@ -49,13 +50,12 @@ impl Facets {
         }
         let covered = |piece: PieceId| is_covered[scene.piece(piece).polygon().index()];
         let joined = bvh::facets(scene, |a, b| !covered(a) && !covered(b));
-        let scale =
-            inverse_power_of_two(scene.bounds().map_or(1.0, |(low, high)| low.abs().max(high.abs()).max_element()));
+        let placement = Placement::of(scene);
         let mut builder = Scene::builder();
         let material = builder.add_material(Material::new("facet"));
         let object = builder.add_object("facets");
         for &position in scene.vertices() {
-            builder.add_vertex(position * scale);
+            builder.add_vertex(placement.local(position));
         }
         let mut of_piece = vec![0; scene.piece_count()];
         let mut facets = Vec::with_capacity(joined.len());
@@ -63,7 +63,7 @@ impl Facets {
             for piece in &joined.pieces {
                 of_piece[piece.index()] = facet as u32;
             }
-            let ring: Vec<DVec3> = joined.ring.iter().map(|&vertex| scene.vertex(vertex) * scale).collect();
+            let ring: Vec<DVec3> = joined.ring.iter().map(|&vertex| placement.local(scene.vertex(vertex))).collect();
             let spanning = spanning(&ring);
             facets.push(Facet { ring, spanning, is_covered: covered(joined.pieces[0]), solid: joined.solid });
             let ring = joined.ring.iter().map(|vertex| vertex.index()).collect();
@@ -75,7 +75,7 @@ impl Facets {
         for plane in planes {
             lies.extend(facets.iter().map(|facet| Lies::of(&facet.ring, plane.spanning)));
         }
-        Ok(Self { order: SceneBvh::build(&scene).into(), all: facets, of_piece, scale, lies })
+        Ok(Self { order: SceneBvh::build(&scene).into(), all: facets, of_piece, placement, lies })
     }
 }
 
@@ -86,12 +86,6 @@ impl Facets {
         let other = || Lies::of(&self.all[facet as usize].ring, self.all[plane as usize].spanning);
         self.lies.get(place).copied().unwrap_or_else(other)
     }
-}
-
-/// The power of two that brings a positive number near 1.
-fn inverse_power_of_two(x: f64) -> f64 {
-    let exponent = ((x.to_bits() >> 52) as i32 & 0x7ff) - 1023;
-    2.0_f64.powi(-exponent.clamp(-1000, 1000))
 }
 
 /// The corners of a convex ring that span the largest triangle with its first edge's start, in their order.

@@ -1,16 +1,43 @@
 //! A row of the matrix: where what leaves one patch goes.
 
 use crate::scene::PolygonId;
+use glam::DVec3;
 
 /// What is told of a patch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PatchInfo {
-    /// Its name: that of the polygon's object, or with the number of the piece in the mesh.
+    /// Its name: that of the polygon's object.
     pub name: String,
     /// The polygon that it is, or is part of; of an object the first one.
     pub polygon: PolygonId,
-    /// Its area, in square scene units; 0 for a degenerate face.
+    /// Its area, in square scene units; 0 for a degenerate face. Where numbers do not hold it, with sides above 1e154 or below 1e-162, it is infinite or 0,
+    /// and factors are what they are all the same.
     pub area: f64,
+    /// Where it is; `None` if it has no area.
+    pub shape: Option<PatchShape>,
+}
+
+/// Where a patch is, in scene units.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchShape {
+    /// Its centre of mass. That of a patch that is not convex, or not flat, may lie beside it.
+    pub center: DVec3,
+    /// The unit normal of its front; of a patch that is not flat the direction of its vector area, the integral of its normals. `None` if that
+    /// is 0, as of a closed surface: shorter than 1e-9 of the area.
+    pub normal: Option<DVec3>,
+    /// The convex pieces that it consists of, each counter-clockwise seen from its front: one for a convex polygon, or a part of a mesh. Corners of
+    /// polygons are exactly those of the scene.
+    pub pieces: Vec<Vec<DVec3>>,
+}
+
+impl PatchShape {
+    /// The corners of a patch that is one convex piece, counter-clockwise seen from its front.
+    pub fn boundary(&self) -> Option<&[DVec3]> {
+        match &self.pieces[..] {
+            [only] => Some(only),
+            _ => None,
+        }
+    }
 }
 
 /// A form factor with an estimate of its absolute error.

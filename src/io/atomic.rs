@@ -1,6 +1,7 @@
 //! Files that are there as a whole or not at all.
 
-use std::fs::{self, File, OpenOptions};
+use std::ffi::OsStr;
+use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -47,6 +48,9 @@ pub fn atomic_write<E: From<io::Error>>(
     Ok(())
 }
 
+/// The end of temporary names.
+const ENDING: &str = ".tmp";
+
 /// A file under a name of its own, removed unless it is done.
 struct Temporary {
     path: PathBuf,
@@ -63,15 +67,53 @@ impl Temporary {
         loop {
             let mut unique = std::ffi::OsString::from(".");
             unique.push(name);
-            unique.push(format!(".{}-{}.tmp", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+            unique.push(format!(".{}-{}{ENDING}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
             let path = target.with_file_name(unique);
-            match OpenOptions::new().write(true).create_new(true).open(&path) {
-                Ok(file) => return Ok(Self { path, file: BufWriter::new(file), is_done: false }),
-                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            let file = match OpenOptions::new().write(true).create_new(true).open(&path) {
+                Ok(file) => file,
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => continue,
                 Err(error) => return Err(error),
+            };
+            // The lock tells that someone is writing; the system takes it away from who does not any more. Where there are no locks nothing is ever
+            // taken to be abandoned. One who was quicker holds it only to remove the file.
+            let is_taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
+            if !is_taken && fs::symlink_metadata(&path).is_ok() {
+                return Ok(Self { path, file: BufWriter::new(file), is_done: false });
             }
         }
     }
+}
+
+/// Removes what killed processes left of writing a file with [`atomic_write`]: the temporary files beside it, which are
+/// called `.NAME.PID-N.tmp`, and that no one is writing any more. It takes reading the directory.
+///
+/// Whether someone writes is told by a lock on the file, which ends with the process, on whichever machine that is. What cannot be locked stays, and
+/// nothing that goes wrong here is told: it is only about space.
+pub fn remove_abandoned(path: &Path) {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let Some(name) = target.file_name() else { return };
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if !is_file || !is_temporary(&entry.file_name(), name) {
+            continue;
+        }
+        // Kept until it is removed: who has just made it must not be between that and his lock.
+        let Ok(file) = File::options().write(true).open(entry.path()) else { continue };
+        if file.try_lock().is_ok() {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// True for a name that [`atomic_write`] gives to what becomes a file with the name `target`.
+fn is_temporary(name: &OsStr, target: &OsStr) -> bool {
+    let is_number = |text: &[u8]| !text.is_empty() && text.iter().all(u8::is_ascii_digit);
+    let numbers = name.as_encoded_bytes().strip_prefix(b".").and_then(|name| {
+        name.strip_prefix(target.as_encoded_bytes())?.strip_prefix(b".")?.strip_suffix(ENDING.as_bytes())
+    });
+    let place = numbers.and_then(|numbers| numbers.iter().position(|&byte| byte == b'-'));
+    matches!((numbers, place), (Some(numbers), Some(place)) if is_number(&numbers[..place]) && is_number(&numbers[place + 1..]))
 }
 
 impl Drop for Temporary {
@@ -80,5 +122,51 @@ impl Drop for Temporary {
             // There is no one left to tell if this fails.
             let _ = fs::remove_file(&self.path);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_temporary_files_of_the_target_that_no_one_writes_are_removed() {
+        let folder = std::env::temp_dir().join(format!("nusselt-abandoned-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("a folder for tests");
+        let left = [".a.npy.17-0.tmp", ".a.npy.4000000000-12.tmp"];
+        let others = [
+            "a.npy",
+            ".a.npy",
+            ".a.npy.tmp",
+            ".a.npy.-.tmp",
+            ".a.npy.17-.tmp",
+            ".a.npy.17.tmp",
+            ".a.npy.x-1.tmp",
+            ".a.npy.1-2-3.tmp",
+            ".a.npy.17-0.tmp2",
+            ".a.npy.partial.17-0.tmp",
+            ".b.npy.17-0.tmp",
+            "a.npy.17-0.tmp",
+        ];
+        for name in left.iter().chain(&others) {
+            fs::write(folder.join(name), name).expect("writable");
+        }
+        fs::create_dir(folder.join(".a.npy.18-0.tmp")).expect("a folder");
+        let target = folder.join("a.npy");
+        // Another one writes it at the same time.
+        atomic_write(&target, |file| {
+            file.write_all(b"new")?;
+            remove_abandoned(&target);
+            let there = |name: &&str| folder.join(name).exists();
+            assert!(!left.iter().any(there) && others.iter().all(there));
+            Ok::<_, io::Error>(())
+        })
+        .expect("its own is not taken away");
+        assert_eq!(fs::read(&target).expect("it is there"), b"new");
+        assert!(folder.join(".a.npy.18-0.tmp").is_dir());
+        remove_abandoned(&folder.join("none").join("a.npy"));
+        remove_abandoned(Path::new("/"));
+        fs::remove_dir_all(&folder).expect("it is there");
     }
 }

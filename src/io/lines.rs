@@ -30,9 +30,12 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
     lines_after(without_mark(bytes), 0)
 }
 
+/// The mark that a file of text may start with.
+pub(super) const MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// The bytes without the mark that a file of text may start with.
 pub(super) fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+    bytes.strip_prefix(MARK).unwrap_or(bytes)
 }
 
 /// The same of bytes that so many lines of the file come before.

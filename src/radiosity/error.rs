@@ -20,18 +20,6 @@ pub enum RadiosityError {
         /// What it says.
         reflectance: [f64; 3],
     },
-    /// A material's emission is negative or no number.
-    #[error(
-        "polygon {polygon}: its material {material} has an emission of {emission:?}; it has to be finite and at least 0"
-    )]
-    BadEmission {
-        /// The first polygon of that material.
-        polygon: PolygonId,
-        /// The material's name.
-        material: String,
-        /// What it says.
-        emission: [f64; 3],
-    },
     /// Nothing emits from its front.
     #[error("no polygon emits; give a material an emission (Ke)")]
     Dark,

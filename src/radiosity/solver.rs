@@ -79,7 +79,7 @@ impl<'a> Solver<'a> {
     /// Starts with what patches emit. The exchange is that of the scene, patch by polygon.
     ///
     /// # Errors
-    /// If a material reflects more than 1 or emits less than nothing, or if nothing emits.
+    /// If a material reflects more than 1, or if nothing emits.
     pub fn new(scene: &Scene, exchange: &'a Exchange, options: SolverOptions) -> Result<Self, RadiosityError> {
         let (mut emission, mut reflectance) = (Vec::new(), Vec::new());
         for PatchInfo { polygon, .. } in exchange.patches() {
@@ -87,10 +87,6 @@ impl<'a> Solver<'a> {
             if !material.diffuse.iter().all(|x| (0.0..=1.0).contains(x)) {
                 let (polygon, material, reflectance) = (*polygon, material.name.clone(), material.diffuse);
                 return Err(RadiosityError::BadReflectance { polygon, material, reflectance });
-            }
-            if !material.emission.iter().all(|x| x.is_finite() && *x >= 0.0) {
-                let (polygon, material, emission) = (*polygon, material.name.clone(), material.emission);
-                return Err(RadiosityError::BadEmission { polygon, material, emission });
             }
             emission.push(DVec3::from(material.emission) * PI);
             reflectance.push(DVec3::from(material.diffuse));

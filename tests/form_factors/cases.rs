@@ -1,16 +1,32 @@
 //! Pairs of patches with a reference for their factor.
 
-use super::references::{behind_a_plate, graded, lambert, mean, opposed, perpendicular};
+use super::references::{behind_a_plate, between_rings, graded, lambert, mean, opposed, perpendicular};
 use glam::DVec3;
+use nusselt::factors::Row;
 use nusselt::scene::{Material, Scene};
+use std::f64::consts::TAU;
+use std::ops::Range;
 
-/// A factor that is known.
+/// A factor that is known, or a sum of some.
 pub(crate) struct Case {
     pub(crate) name: String,
     pub(crate) scene: Scene,
     pub(crate) row: usize,
-    pub(crate) column: u32,
+    pub(crate) columns: Range<u32>,
     pub(crate) reference: f64,
+}
+
+impl Case {
+    /// The error allowed, with this one for each factor.
+    pub(crate) fn allowed(&self, tolerance: f64) -> f64 {
+        tolerance * self.columns.len() as f64
+    }
+
+    /// The same of a row that was computed.
+    pub(crate) fn of(&self, row: &Row) -> f64 {
+        let entries = row.entries.iter().filter(|entry| self.columns.contains(&entry.column));
+        entries.map(|entry| entry.share.factor).sum()
+    }
 }
 
 /// A scene of convex polygons given by their corners.
@@ -57,11 +73,26 @@ pub(crate) fn cuboid(low: [f64; 3], high: [f64; 3], inside: bool) -> Vec<Vec<[f6
     faces
 }
 
+/// A regular polygon about the z axis with the area of a disc, counter-clockwise seen from above if it is to be `up`.
+pub(crate) fn ring(corners: usize, radius: f64, z: f64, up: bool) -> Vec<[f64; 3]> {
+    let step = TAU / corners as f64;
+    let equal_area = radius * (step / step.sin()).sqrt();
+    let corner = |k: usize| {
+        let (sin, cos) = (k as f64 * step).sin_cos();
+        [equal_area * cos, equal_area * sin, z]
+    };
+    let mut ring: Vec<[f64; 3]> = (0..corners).map(corner).collect();
+    if !up {
+        ring.reverse();
+    }
+    ring
+}
+
 /// All of them.
 pub(crate) fn all() -> Vec<Case> {
     let mut cases = Vec::new();
     let mut add = |name: String, polygons: &[Vec<[f64; 3]>], column: u32, reference: f64| {
-        cases.push(Case { name, scene: scene_of(polygons), row: 0, column, reference });
+        cases.push(Case { name, scene: scene_of(polygons), row: 0, columns: column..column + 1, reference });
     };
     for (a, b, c) in [(1.0, 1.0, 1.0), (2.0, 0.5, 0.7), (1.0, 3.0, 0.1), (1.0, 1.0, 0.001), (1.0, 1.0, 30.0)] {
         let below = rectangle([0.; 3], [a, 0., 0.], [0., b, 0.]);
@@ -81,6 +112,11 @@ pub(crate) fn all() -> Vec<Case> {
         let places = graded();
         let reference = mean(&places, &places, |u, v| lambert(DVec3::new(u, 1.5 * v, 0.0), DVec3::Z, &target).abs());
         add(format!("wedge of {degrees} degrees"), &[floor, leaf], 1, reference);
+    }
+    for (r1, r2, c) in [(1.0, 1.0, 1.0), (0.5, 2.0, 1.0)] {
+        let [disc, target] = [ring(48, r1, 0.0, true), ring(48, r2, c, false)];
+        let reference = between_rings(&disc, &target);
+        add(format!("disc of {r1} to one of {r2}, gap {c}, as 48-gons"), &[disc, target], 1, reference);
     }
     let corners = [[1., 1., 1.], [1., -1., -1.], [-1., 1., -1.], [-1., -1., 1.]];
     let tetrahedron = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]].map(|face| face.map(|k| corners[k]).to_vec());
@@ -102,5 +138,9 @@ pub(crate) fn all() -> Vec<Case> {
         let polygons = [level(from, 0.0), ceiling, plate];
         add(format!("behind a plate, {}", k + 1), &polygons, 1, behind_a_plate(from, blocker, middle, to, top));
     }
+    // By symmetry a sixth of what the inner one, which sees nothing else, exchanges.
+    let polygons = [cuboid([0.; 3], [3.; 3], true), cuboid([1.; 3], [2.; 3], false)].concat();
+    let name = "cube in a cube, a face to the inner one".to_owned();
+    cases.push(Case { name, scene: scene_of(&polygons), row: 0, columns: 6..12, reference: 1.0 / 9.0 });
     cases
 }

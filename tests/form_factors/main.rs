@@ -4,6 +4,7 @@ mod cases;
 #[path = "../../examples/form_factors/city.rs"]
 mod city;
 mod closed_forms;
+mod far;
 mod hidden;
 mod meshes;
 mod reciprocal;

@@ -2,6 +2,7 @@
 
 use super::cases::{cuboid, rectangle, scene_of};
 use super::exchange;
+use glam::DVec3;
 use nusselt::factors::PatchPlan;
 use nusselt::scene::PolygonId;
 
@@ -37,6 +38,42 @@ fn a_mesh_of_a_room_is_of_squares() {
     // 3 / 0.3 is rounded to a little more than 10.
     let mesh = exchange(&scene, PatchPlan::Mesh { longest_edge: 0.3 }, 1e-2);
     assert_eq!(mesh.patches().len(), 2 * (14 * 10 + 10 * 9 + 14 * 9));
+}
+
+#[test]
+fn patches_tell_where_they_are() {
+    let l = vec![[0., 0., 0.], [2., 0., 0.], [2., 1., 0.], [1., 1., 0.], [1., 2., 0.], [0., 2., 0.]];
+    let wall = rectangle([0., 0., 3.], [0., 2., 0.], [0., 0., 2.]);
+    let mut polygons = cuboid([5.; 3], [6.; 3], false);
+    polygons.extend([l.clone(), wall.clone(), vec![[0.; 3], [1.; 3], [2.; 3]]]);
+    let scene = scene_of(&polygons);
+    let whole = exchange(&scene, PatchPlan::Polygons, 1e-2);
+    let shape = |k: usize| whole.patches()[k].shape.as_ref();
+    // Of a polygon of several pieces, the centre of mass: that of 2 x 1 at (1, 0.5) and 1 x 1 at (0.5, 1.5).
+    let [of_l, of_wall] = [6, 7].map(|k| shape(k).expect("it has area"));
+    assert!(of_l.center.distance(DVec3::new(2.5, 2.5, 0.0) / 3.0) < 1e-15, "{of_l:?}");
+    assert!(of_l.normal == Some(DVec3::Z) && of_l.pieces.len() > 1 && of_l.boundary().is_none(), "{of_l:?}");
+    assert_eq!((of_wall.center, of_wall.normal), (DVec3::new(0.0, 1.0, 4.0), Some(DVec3::X)));
+    assert_eq!(of_wall.boundary(), Some(&wall.iter().map(|&p| DVec3::from(p)).collect::<Vec<_>>()[..]));
+    assert_eq!(shape(8), None, "no area");
+    // A closed surface has no normal.
+    let box_alone = exchange(&scene_of(&polygons[..6]), PatchPlan::Objects, 1e-2);
+    let around = box_alone.patches()[0].shape.as_ref().expect("it has area");
+    assert_eq!((around.center, around.normal, around.pieces.len()), (DVec3::splat(5.5), None, 6));
+    // Parts of a mesh: by polygon, and in a grid along the first edge first.
+    let mesh = exchange(&scene, PatchPlan::Mesh { longest_edge: 1.0 }, 1e-2);
+    assert!(mesh.patches().is_sorted_by_key(|patch| patch.polygon));
+    let of_wall = mesh.patches().iter().filter(|patch| patch.polygon == PolygonId(7));
+    let centers: Vec<_> = of_wall.map(|patch| patch.shape.as_ref().expect("it has area").center.to_array()).collect();
+    assert_eq!(centers, [[0., 0.5, 3.5], [0., 1.5, 3.5], [0., 0.5, 4.5], [0., 1.5, 4.5]]);
+    for (k, patch) in mesh.patches().iter().enumerate() {
+        let shape = patch.shape.as_ref().expect("meshes have no patches without area");
+        let corners = shape.boundary().expect("one piece");
+        let sides = corners.iter().zip(corners.iter().cycle().skip(1));
+        let twice: DVec3 = sides.map(|(&a, &b)| (a - shape.center).cross(b - shape.center)).sum();
+        let normal = shape.normal.expect("it is flat");
+        assert!((twice.dot(normal) / 2.0 - patch.area).abs() < 1e-12, "{k}: counter-clockwise seen from the front");
+    }
 }
 
 #[test]

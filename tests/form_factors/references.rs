@@ -67,6 +67,17 @@ pub(crate) fn mean(us: &[f64], vs: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     sum
 }
 
+/// From a regular polygon about the z axis to another one, both in planes of constant z: all sectors of the first see alike. In a sector, points are between
+/// the centre and a side.
+pub(crate) fn between_rings(from: &[[f64; 3]], to: &[[f64; 3]]) -> f64 {
+    let target: Vec<DVec3> = to.iter().map(|&p| DVec3::from(p)).collect();
+    let [a, b] = [from[0], from[1]].map(DVec3::from);
+    let centre = DVec3::new(0.0, 0.0, a.z);
+    let places: Vec<f64> = (0..=8).map(|k| f64::from(k) / 8.0).collect();
+    // The area grows with the distance from the centre.
+    mean(&places, &[0.0, 1.0], |s, t| 2.0 * s * lambert(centre.lerp(a.lerp(b, t), s), DVec3::Z, &target).abs())
+}
+
 /// Places from 0 to 1 that come closer and closer to both ends, to where a function of the distance is smooth between them.
 pub(crate) fn graded() -> Vec<f64> {
     let halves = (0..40).map(|k| 0.5_f64.powi(40 - k));

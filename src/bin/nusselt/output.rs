@@ -1,7 +1,7 @@
 //! Files and standard output.
 
 use crate::failure::Failure;
-use nusselt::io::{atomic_write, mtl, obj};
+use nusselt::io::{atomic_write, mtl, obj, remove_abandoned};
 use nusselt::scene::Scene;
 use std::fmt::Display;
 use std::fs::File;
@@ -112,6 +112,13 @@ pub(crate) fn keep<'a>(files: &[PathBuf], outputs: impl Iterator<Item = &'a Path
         }
     }
     Ok(())
+}
+
+/// Removes what killed runs left of writing an output.
+pub(crate) fn clear(output: &Path) {
+    for path in written(output) {
+        remove_abandoned(&path);
+    }
 }
 
 /// True if both names lead to one file, as far as that can be told before it is written.

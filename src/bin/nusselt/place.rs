@@ -115,14 +115,13 @@ impl<'a> PointsOf<'a> {
         if self.is_stdin() { Vec::new() } else { vec![self.path.to_owned()] }
     }
 
-    /// Starts reading.
+    /// Starts reading. Who writes to standard input may wait for an answer before he goes on.
     pub(crate) fn open(self) -> Result<PointReader<Box<dyn Read>>, Failure> {
-        let reader: Box<dyn Read> = if self.is_stdin() {
-            Box::new(std::io::stdin().lock())
-        } else {
-            Box::new(open_points(self.path).map_err(|error| Failure::Work(error.to_string()))?.into_inner())
-        };
-        Ok(PointReader::new(reader, self.name()))
+        if self.is_stdin() {
+            return Ok(PointReader::live(Box::new(std::io::stdin().lock()), self.name()));
+        }
+        let file = open_points(self.path).map_err(|error| Failure::Work(error.to_string()))?.into_inner();
+        Ok(PointReader::new(Box::new(file), self.name()))
     }
 
     /// Reads a file once to see that it can be used to its end; how many points there are. Of standard input nothing is known before.
@@ -135,13 +134,8 @@ impl<'a> PointsOf<'a> {
         let mut count = 0;
         while reader.next(usize::MAX, &mut points).map_err(|error| Failure::Work(error.to_string()))? {
             count += points.len();
-            for point in &points {
-                let is_there = |polygon: PolygonId| {
-                    polygon.index() < scene.polygon_count() && scene.polygon(polygon).pieces().next().is_some()
-                };
-                if point.polygon.is_some_and(|polygon| !is_there(polygon)) {
-                    stand(scene, None, point).map_err(|error| self.failed_at(point, &error))?;
-                }
+            for point in points.iter().filter(|point| point.polygon.is_some()) {
+                stand(scene, None, point).map_err(|error| self.failed_at(point, &error))?;
             }
         }
         Ok(Some(count))

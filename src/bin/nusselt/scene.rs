@@ -2,7 +2,7 @@
 
 use crate::args::Common;
 use crate::failure::Failure;
-use crate::output::{library_of, print, print_json, write_file};
+use crate::output::{clear, library_of, print, print_json, write_file};
 use crate::summary::Timing;
 use nusselt::samples::{Kind, Mesh, cornell_box, generate};
 use serde_json::json;
@@ -54,6 +54,7 @@ impl Scene {
         let (mesh, name) = self.make()?;
         let timing = Timing::new(start.elapsed().as_secs_f64(), 0.0, &[]);
         let (library, library_name) = library_of(&self.output);
+        clear(&self.output);
         // First, so that the scene never refers to what is not there.
         write_file(&library, |out| mesh.write_mtl(out))?;
         write_file(&self.output, |out| mesh.write_obj(&library_name, out))?;

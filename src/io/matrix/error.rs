@@ -1,5 +1,6 @@
 //! What can go wrong with files of the matrix.
 
+use crate::scene::PolygonId;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -49,6 +50,18 @@ pub enum MatrixError {
     TooManyPatches {
         /// How many there are.
         count: usize,
+    },
+    /// The area of a patch is beyond what numbers hold.
+    #[error(
+        "the area of patch {patch} (polygon {polygon}) is {area:e} in square scene units, beyond the range of numbers; scale the scene"
+    )]
+    BadArea {
+        /// The patch.
+        patch: usize,
+        /// The polygon that it is, or is part of.
+        polygon: PolygonId,
+        /// What comes out: infinite, or 0 where it is not.
+        area: f64,
     },
     /// An unfinished run is in the way.
     #[error("{} is there from an unfinished run; resume it, or delete it to start again", path.display())]

@@ -3,7 +3,7 @@
 use super::super::json::{field, rows};
 use super::FORM_FACTORS_SCHEMA;
 use super::rows::{Source, Unwritten};
-use crate::factors::Row;
+use crate::factors::{PatchInfo, PatchShape, Row};
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -12,15 +12,31 @@ struct Patch<'a> {
     name: &'a str,
     polygon: u32,
     area: f64,
+    center: Option<[f64; 3]>,
+    normal: Option<[f64; 3]>,
+    /// Of a patch that is one convex piece.
+    boundary: Option<Vec<[f64; 3]>>,
+}
+
+impl<'a> From<&'a PatchInfo> for Patch<'a> {
+    fn from(patch: &'a PatchInfo) -> Self {
+        let shape = patch.shape.as_ref();
+        let boundary = shape.and_then(PatchShape::boundary);
+        Self {
+            name: &patch.name,
+            polygon: patch.polygon.0,
+            area: patch.area,
+            center: shape.map(|shape| shape.center.into()),
+            normal: shape.and_then(|shape| shape.normal).map(Into::into),
+            boundary: boundary.map(|corners| corners.iter().map(|&p| p.into()).collect()),
+        }
+    }
 }
 
 pub(super) fn write<W: Write>(source: &Source, out: &mut W) -> Result<(), Unwritten> {
     writeln!(out, "{{")?;
     field(out, "schema", &FORM_FACTORS_SCHEMA)?;
-    rows(out, "patches", &source.patches, |out, patch| {
-        let patch = Patch { name: &patch.name, polygon: patch.polygon.0, area: patch.area };
-        Ok(serde_json::to_writer(out, &patch)?)
-    })?;
+    rows(out, "patches", &source.patches, |out, patch| Ok(serde_json::to_writer(out, &Patch::from(patch))?))?;
     write!(out, ",\n\"factors\": [")?;
     let mut is_first = true;
     source.for_each(|row| {

@@ -1,7 +1,7 @@
 //! What a file of rows belongs to.
 
 use super::super::digest::Digest;
-use super::MatrixError;
+use super::{MatrixError, record};
 use crate::factors::PatchInfo;
 use crate::scene::{Scene, Shape, Side};
 use serde::{Deserialize, Serialize};
@@ -10,7 +10,7 @@ use std::fmt::Display;
 use std::ops::Range;
 
 /// The schema's name.
-pub const MANIFEST_SCHEMA: &str = "nusselt.form-factors-rows/1";
+pub const MANIFEST_SCHEMA: &str = "nusselt.form-factors-rows/2";
 
 /// What is computed: the rows of a matrix, of a scene in patches, with some options.
 #[derive(Clone, Debug)]
@@ -43,13 +43,18 @@ impl<'a> MatrixJob<'a> {
     /// What a file of these rows says of itself. Takes time in proportion to the scene.
     ///
     /// # Errors
-    /// If there are no such rows, or more patches than 32 bits number.
+    /// If there are no such rows, more patches than 32 bits number, or an area that no number tells.
     pub fn manifest(&self) -> Result<Manifest, MatrixError> {
         let too_many = |_| MatrixError::TooManyPatches { count: self.patches.len() };
         let count = u32::try_from(self.patches.len()).map_err(too_many)?;
         let rows = self.rows.clone().unwrap_or(0..count);
         if rows.end > count || (rows.start >= rows.end && rows != (0..count)) {
             return Err(MatrixError::BadRange { rows, count });
+        }
+        let is_bad = |patch: &PatchInfo| !patch.area.is_finite() || (patch.area == 0.0 && patch.shape.is_some());
+        if let Some(patch) = self.patches.iter().position(is_bad) {
+            let PatchInfo { polygon, area, .. } = self.patches[patch];
+            return Err(MatrixError::BadArea { patch, polygon, area });
         }
         Ok(Manifest {
             schema: MANIFEST_SCHEMA.to_owned(),
@@ -76,7 +81,7 @@ pub struct Manifest {
     pub options: BTreeMap<String, String>,
     /// How many patches there are.
     pub patches: u32,
-    /// A digest of their names, polygons and areas.
+    /// A digest of their names, polygons, areas and shapes.
     pub patches_digest: Digest,
     /// The first row, and one more than the last.
     pub rows: [u32; 2],
@@ -111,7 +116,7 @@ impl Manifest {
         if self.scene != other.scene {
             all.push("the scene is another one".to_owned());
         } else if self.patches_digest != other.patches_digest && self.patches == other.patches {
-            all.push("names, polygons or areas of patches are others".to_owned());
+            all.push("names, polygons, areas or shapes of patches are others".to_owned());
         }
         all
     }
@@ -158,7 +163,8 @@ pub fn scene_digest(scene: &Scene) -> Digest {
 }
 
 pub(super) fn patches_digest(patches: &[PatchInfo]) -> Digest {
-    patches.iter().fold(Digest::EMPTY, |digest, PatchInfo { name, polygon, area }| {
-        digest.with_text(name).with(&polygon.0.to_le_bytes()).with(&area.to_bits().to_le_bytes())
+    patches.iter().fold(Digest::EMPTY, |digest, patch| {
+        let bytes = record::of_patch(patch);
+        digest.with(&(bytes.len() as u64).to_le_bytes()).with(&bytes)
     })
 }

@@ -11,7 +11,7 @@
 //!
 //! let scene = nusselt::samples::cornell_box().to_builder().build()?;
 //! // Two patches that see half of each other, as something computes them.
-//! let patch = |k| PatchInfo { name: format!("patch {k}"), polygon: PolygonId(k), area: 1.0 };
+//! let patch = |k| PatchInfo { name: format!("patch {k}"), polygon: PolygonId(k), area: 1.0, shape: None };
 //! let patches = [patch(0), patch(1)];
 //! let half = Share { factor: 0.5, error: 1e-9 };
 //! let row = |patch| Row {
@@ -51,6 +51,7 @@ mod mtx;
 mod npy;
 #[cfg(feature = "parquet")]
 mod parquet;
+mod patches;
 mod record;
 mod rows;
 mod writer;
@@ -64,6 +65,7 @@ pub use error::MatrixError;
 pub use format::MatrixFormat;
 pub use manifest::{MANIFEST_SCHEMA, Manifest, MatrixJob, scene_digest};
 pub use merge::merge;
+pub use patches::{PatchesFormat, read_patches};
 pub use writer::MatrixWriter;
 
 /// The schema of the matrix as JSON.

@@ -4,11 +4,12 @@
 //! each row.
 
 use super::super::digest::Digest;
-use crate::factors::{Entry, PatchInfo, Row, Share};
+use crate::factors::{Entry, PatchInfo, PatchShape, Row, Share};
 use crate::scene::PolygonId;
+use glam::DVec3;
 use std::io::{self, Read, Write};
 
-pub(super) const MAGIC: &[u8; 16] = b"nusselt rows 1\r\n";
+pub(super) const MAGIC: &[u8; 16] = b"nusselt rows 2\r\n";
 
 /// Bytes of a row without entries, and of an entry.
 const ROW: usize = 4 + 5 * 8 + 4;
@@ -44,16 +45,57 @@ pub(super) fn read(input: &mut impl Read, left: &mut u64, bytes: &mut Vec<u8>) -
 }
 
 pub(super) fn of_patch(patch: &PatchInfo) -> Vec<u8> {
-    let PatchInfo { name, polygon, area } = patch;
-    [&polygon.0.to_le_bytes()[..], &area.to_bits().to_le_bytes(), name.as_bytes()].concat()
+    let PatchInfo { name, polygon, area, shape } = patch;
+    let mut bytes = Vec::new();
+    bytes.extend(polygon.0.to_le_bytes());
+    bytes.extend(area.to_bits().to_le_bytes());
+    bytes.extend((name.len() as u32).to_le_bytes());
+    bytes.extend(name.as_bytes());
+    let Some(PatchShape { center, normal, pieces }) = shape else { return bytes };
+    let point = |bytes: &mut Vec<u8>, p: DVec3| {
+        bytes.extend(p.to_array().into_iter().flat_map(|x| x.to_bits().to_le_bytes()));
+    };
+    point(&mut bytes, *center);
+    // No unit vector is 0.
+    point(&mut bytes, normal.unwrap_or(DVec3::ZERO));
+    bytes.extend((pieces.len() as u32).to_le_bytes());
+    for piece in pieces {
+        bytes.extend((piece.len() as u32).to_le_bytes());
+        for &p in piece {
+            point(&mut bytes, p);
+        }
+    }
+    bytes
 }
 
 pub(super) fn to_patch(bytes: &[u8]) -> Option<PatchInfo> {
     let mut rest = bytes;
     let polygon = PolygonId(whole(&mut rest)?);
-    let area = real(&mut rest)?;
-    let name = std::str::from_utf8(rest).ok()?.to_owned();
-    (area.is_finite() && area >= 0.0).then_some(PatchInfo { name, polygon, area })
+    let area = real(&mut rest).filter(|area| area.is_finite() && *area >= 0.0)?;
+    let length = whole(&mut rest)? as usize;
+    let (name, after) = rest.split_at_checked(length)?;
+    rest = after;
+    let name = std::str::from_utf8(name).ok()?.to_owned();
+    if rest.is_empty() {
+        return Some(PatchInfo { name, polygon, area, shape: None });
+    }
+    let center = point(&mut rest)?;
+    let normal = Some(point(&mut rest)?).filter(|&normal| normal != DVec3::ZERO);
+    // Memory grows with what is there, not with what is said.
+    let mut pieces = Vec::new();
+    for _ in 0..whole(&mut rest)? {
+        let count = whole(&mut rest)?;
+        let mut corners = Vec::new();
+        for _ in 0..count {
+            corners.push(point(&mut rest)?);
+        }
+        if corners.len() < 3 {
+            return None;
+        }
+        pieces.push(corners);
+    }
+    let is_good = rest.is_empty() && !pieces.is_empty();
+    is_good.then_some(PatchInfo { name, polygon, area, shape: Some(PatchShape { center, normal, pieces }) })
 }
 
 pub(super) fn of_row(row: &Row, bytes: &mut Vec<u8>) {
@@ -117,4 +159,9 @@ fn real(rest: &mut &[u8]) -> Option<f64> {
     let (number, after) = rest.split_first_chunk()?;
     *rest = after;
     Some(f64::from_bits(u64::from_le_bytes(*number)))
+}
+
+fn point(rest: &mut &[u8]) -> Option<DVec3> {
+    let p = DVec3::new(real(rest)?, real(rest)?, real(rest)?);
+    p.is_finite().then_some(p)
 }

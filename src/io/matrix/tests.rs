@@ -1,8 +1,9 @@
 //! What files hold, and that interruptions, parts and damage change none of it.
 
 use super::*;
-use crate::factors::{Entry, PatchInfo, Row, Share};
+use crate::factors::{Entry, PatchInfo, PatchShape, Row, Share};
 use crate::scene::{Material, PolygonId, Scene};
+use glam::DVec3;
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -60,9 +61,22 @@ fn scene() -> Scene {
 }
 
 fn patches() -> Vec<PatchInfo> {
-    let patch =
-        |k: u32| PatchInfo { name: format!("p{k}, \"{k}\""), polygon: PolygonId(k / 2), area: f64::from(k) / 3.0 };
+    let patch = |k: u32| PatchInfo {
+        name: format!("p{k}, \"{k}\""),
+        polygon: PolygonId(k / 2),
+        area: f64::from(k) / 3.0,
+        shape: shape(k),
+    };
     (0..COUNT).map(patch).collect()
+}
+
+/// None without area; otherwise one piece or two, with a normal or without.
+fn shape(k: u32) -> Option<PatchShape> {
+    let at = |x: u32, y: f64| DVec3::new(f64::from(x) / 7.0, y, -f64::from(k) / 8.0);
+    let piece = |x: u32| vec![at(x, 0.0), at(x + 1, 0.0), at(x, 0.1)];
+    let pieces = (0..=k % 2).map(|x| piece(3 * x)).collect();
+    let normal = (!k.is_multiple_of(3)).then_some(DVec3::new(0.6, 0.0, -0.8));
+    (k > 0).then(|| PatchShape { center: at(k, 0.05), normal, pieces })
 }
 
 fn share(k: u32) -> Share {
@@ -181,7 +195,17 @@ fn json_keeps_to_its_schema() {
     assert_eq!(file["schema"], FORM_FACTORS_SCHEMA);
     let list = |name: &str| file[name].as_array().unwrap_or_else(|| panic!("{name}")).clone();
     for (read, patch) in list("patches").iter().zip(patches()) {
-        assert_eq!(*read, serde_json::json!({"name": patch.name, "polygon": patch.polygon.0, "area": patch.area}));
+        let (shape, point) = (patch.shape.as_ref(), |p: DVec3| p.to_array());
+        assert_eq!(
+            *read,
+            serde_json::json!({
+                "name": patch.name, "polygon": patch.polygon.0, "area": patch.area,
+                "center": shape.map(|shape| point(shape.center)),
+                "normal": shape.and_then(|shape| shape.normal).map(point),
+                "boundary": shape.filter(|shape| shape.pieces.len() == 1)
+                    .map(|shape| shape.pieces[0].iter().map(|&p| point(p)).collect::<Vec<_>>()),
+            })
+        );
     }
     let rows: Vec<Row> = (0..COUNT).map(row).collect();
     let entries =
@@ -196,6 +220,40 @@ fn json_keeps_to_its_schema() {
         assert_eq!(list(name).len(), COUNT as usize, "{name}");
         assert_eq!(file[name], serde_json::json!(rows.iter().map(of).collect::<Vec<_>>()), "{name}");
     }
+}
+
+#[test]
+fn patches_are_told_apart_in_the_order_of_rows() {
+    let folder = Folder::new("patches");
+    write_part(&folder.at("a.rows"), 0..2);
+    let kept = read_patches(&folder.at("a.rows")).expect("patches");
+    assert_eq!(kept, patches(), "what is read is what was written");
+    let written = |name: &str| {
+        let mut bytes = Vec::new();
+        PatchesFormat::of(Path::new(name)).expect("known").write(&kept, &mut bytes).expect("memory");
+        String::from_utf8(bytes).expect("UTF-8")
+    };
+    let table = written("a.CSV");
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines.len(), 1 + COUNT as usize);
+    assert_eq!(lines[0], "row,name,polygon,area,center_x,center_y,center_z,normal_x,normal_y,normal_z");
+    assert_eq!(lines[1], "0,\"p0, \"\"0\"\"\",0,0,,,,,,");
+    assert_eq!(lines[4], "3,\"p3, \"\"3\"\"\",1,1,0.42857142857142855,0.05,-0.375,,,");
+    assert!(lines[2].ends_with(",0.6,0,-0.8"), "{}", lines[2]);
+    // A group for each, empty for what has no area.
+    let drawn = written("a.obj");
+    let groups: Vec<&str> = drawn.lines().filter(|line| line.starts_with('g')).collect();
+    assert_eq!(groups, (0..COUNT).map(|k| format!("g patch_{k}")).collect::<Vec<_>>());
+    let scene = crate::io::obj::parse(drawn.as_bytes(), "a.obj", &crate::io::ReadOptions::default(), |_| {
+        Err(std::io::Error::other("nothing is to be loaded"))
+    });
+    let scene = scene.expect("it is read again").scene;
+    let pieces: Vec<_> = kept.iter().filter_map(|patch| patch.shape.as_ref()).flat_map(|shape| &shape.pieces).collect();
+    assert_eq!(scene.polygon_count(), pieces.len());
+    for (polygon, piece) in scene.polygons().zip(pieces) {
+        assert_eq!(&polygon.rings()[0].iter().map(|&id| scene.vertex(id)).collect::<Vec<_>>(), piece);
+    }
+    assert_eq!(PatchesFormat::of(Path::new("a.npy")), None);
 }
 
 #[cfg(feature = "parquet")]
@@ -303,13 +361,16 @@ fn another_run_is_not_resumed_and_what_differs_is_said() {
     let moved = scene_with(1.0 + 1e-15, [[0, 1, 2], [1, 2, 3]]);
     let mut renamed = patches.clone();
     renamed[2].name.push('x');
+    let mut turned = patches.clone();
+    turned[2].shape.as_mut().expect("it has area").pieces[0].reverse();
     for (other, said) in [
         (job(&moved, &patches), "the scene is another one"),
         (good.clone().with_option("tolerance", 1e-3), "tolerance was 0.0001, and is 0.001"),
         (good.clone().with_option("two-sided", true), "two-sided was not given, and is true"),
         (good.clone().with_rows(0..3), "the rows were 0..7, and are 0..3"),
         (job(&scene, &patches[..6]), "the number of patches was 7, and is 6"),
-        (job(&scene, &renamed), "names, polygons or areas of patches are others"),
+        (job(&scene, &renamed), "names, polygons, areas or shapes of patches are others"),
+        (job(&scene, &turned), "names, polygons, areas or shapes of patches are others"),
     ] {
         let error = MatrixWriter::resume(&path, &other).expect_err(said);
         assert!(matches!(&error, MatrixError::Changed { .. }) && error.to_string().contains(said), "{error}");
@@ -381,6 +442,11 @@ fn rows_and_ranges_that_cannot_be_are_refused() {
     let reversed = std::ops::Range { start: 3, end: 2 };
     for rows in [0..8, 3..3, 8..9, reversed] {
         assert!(matches!(create("m.rows", &good.clone().with_rows(rows)), Err(MatrixError::BadRange { count: 7, .. })));
+    }
+    for area in [f64::INFINITY, f64::NAN, 0.0] {
+        let mut huge = patches.clone();
+        huge[3].area = area;
+        assert!(matches!(create("m.csv", &job(&scene, &huge)), Err(MatrixError::BadArea { patch: 3, .. })), "{area}");
     }
     assert_eq!(folder.names(), [""; 0]);
     let mut writer = create("m.csv", &good).expect("a new file");
@@ -464,6 +530,14 @@ fn counts_that_lie_take_no_memory() {
     let most = Manifest { patches: u32::MAX, rows: [0, u32::MAX], ..manifest.clone() };
     let heads: Vec<Vec<u8>> = patches.iter().map(record::of_patch).collect();
     let heads: Vec<&[u8]> = heads.iter().map(Vec::as_slice).collect();
+    // Of the last patch, with one piece of three corners: the counts of pieces, of corners, and of letters.
+    let lie = |place: usize| {
+        let mut bytes = heads[6].to_vec();
+        bytes[place..place + 4].copy_from_slice(&u32::MAX.to_le_bytes());
+        bytes
+    };
+    let end = heads[6].len();
+    let [many_pieces, many_corners, long_name] = [end - 72 - 8, end - 72 - 4, 12].map(lie);
     let mut many = Vec::new();
     record::of_row(&row(0), &mut many);
     let place = many.len() - 4;
@@ -481,6 +555,10 @@ fn counts_that_lie_take_no_memory() {
         forged(&manifest, &heads[..3]),
         forged(&manifest, &[heads[0]; 7]),
         forged(&manifest, &[&b"x"[..]; 7]),
+        forged(&manifest, &[&heads[..6], &[&many_pieces[..]]].concat()),
+        forged(&manifest, &[&heads[..6], &[&many_corners[..]]].concat()),
+        forged(&manifest, &[&heads[..6], &[&long_name[..]]].concat()),
+        forged(&manifest, &[&heads[..6], &[&[heads[6], b"x"].concat()[..]]].concat()),
         with(&many),
         with(&other),
         with(b""),

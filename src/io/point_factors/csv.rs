@@ -33,6 +33,10 @@ impl<W: Write> Csv<W> {
         Ok(())
     }
 
+    pub(super) fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+
     pub(super) fn finish(self) -> W {
         self.out
     }

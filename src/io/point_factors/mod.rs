@@ -105,6 +105,21 @@ impl<W: Write + Send> PointFactorsWriter<W> {
         }
     }
 
+    /// Hands on what was written so far.
+    ///
+    /// # Errors
+    /// If writing fails.
+    pub fn flush(&mut self) -> io::Result<()> {
+        match &mut self.table {
+            Table::Csv(csv) => csv.flush(),
+            #[cfg(feature = "json")]
+            Table::Json(out) => out.flush(),
+            // In groups of rows, when they are full.
+            #[cfg(feature = "parquet")]
+            Table::Parquet(_) => Ok(()),
+        }
+    }
+
     /// How many points were written.
     pub fn count(&self) -> u64 {
         self.count

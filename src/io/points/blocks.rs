@@ -1,10 +1,13 @@
 //! A text in blocks of whole lines, as it is read: of any length, in bounded memory.
 
-use super::super::lines::without_mark;
+use super::super::lines::{MARK, without_mark};
 use std::io::{self, Read};
 
 /// No line may be longer. Blocks are as large, or up to twice that.
 const LONGEST: usize = 1 << 20;
+
+/// So much is read at once of what is live: what a pipe holds.
+const AT_ONCE: usize = 1 << 16;
 
 /// Of a longer line so much is passed over to find its end; the text ends there if it has none. Standard input may never end.
 const MOST_PASSED: usize = 1 << 28;
@@ -19,6 +22,10 @@ pub(super) struct Blocks<R> {
     lines: usize,
     is_at_start: bool,
     is_at_end: bool,
+    /// Whether lines are given out as soon as they are there.
+    is_live: bool,
+    /// Before that place of the buffer no line ends.
+    searched: usize,
 }
 
 /// Some of the text.
@@ -31,7 +38,21 @@ pub(super) enum Block<'a> {
 
 impl<R: Read> Blocks<R> {
     pub(super) fn new(reader: R) -> Self {
-        Self { reader, buffer: Vec::new(), given: 0, lines: 0, is_at_start: true, is_at_end: false }
+        Self {
+            reader,
+            buffer: Vec::new(),
+            given: 0,
+            lines: 0,
+            is_at_start: true,
+            is_at_end: false,
+            is_live: false,
+            searched: 0,
+        }
+    }
+
+    /// Blocks hold what came with one read.
+    pub(super) fn live(reader: R) -> Self {
+        Self { is_live: true, ..Self::new(reader) }
     }
 
     pub(super) fn into_inner(self) -> R {
@@ -42,31 +63,39 @@ impl<R: Read> Blocks<R> {
     pub(super) fn next(&mut self) -> io::Result<Option<Block<'_>>> {
         self.lines += ends(&self.buffer, self.given);
         self.buffer.drain(..self.given);
-        self.given = 0;
+        (self.given, self.searched) = (0, 0);
         loop {
             self.fill(LONGEST)?;
+            let may_be_mark = self.buffer.len() < MARK.len() && MARK.starts_with(&self.buffer);
+            if self.is_at_start && may_be_mark && !self.is_at_end {
+                continue;
+            }
             if std::mem::take(&mut self.is_at_start) {
                 let mark = self.buffer.len() - without_mark(&self.buffer).len();
                 self.buffer.drain(..mark);
             }
-            if self.buffer.is_empty() {
+            if self.buffer.is_empty() && self.is_at_end {
                 return Ok(None);
             }
             if self.is_at_end {
                 self.given = self.buffer.len();
-            } else if let Some(end) = last_end(&self.buffer) {
+            } else if let Some(end) = last_end(&self.buffer, self.searched) {
                 self.given = end;
             } else if self.buffer.len() > LONGEST {
                 return self.pass_over().map(Some);
             } else {
+                self.searched = self.buffer.len();
                 continue;
             }
             return Ok(Some(Block::Lines(&self.buffer[..self.given], self.lines)));
         }
     }
 
-    /// Reads until there are more than so many bytes, or no more.
+    /// Reads until there are more than so many bytes, or no more; if it is live, what there is.
     fn fill(&mut self, most: usize) -> io::Result<()> {
+        if self.is_live {
+            return self.read_once(most);
+        }
         if self.buffer.len() <= most && !self.is_at_end {
             let wanted = (most + 1 - self.buffer.len()) as u64;
             let read = self.reader.by_ref().take(wanted).read_to_end(&mut self.buffer)?;
@@ -75,12 +104,29 @@ impl<R: Read> Blocks<R> {
         Ok(())
     }
 
+    fn read_once(&mut self, most: usize) -> io::Result<()> {
+        let length = self.buffer.len();
+        if length > most || self.is_at_end {
+            return Ok(());
+        }
+        self.buffer.resize((length + AT_ONCE).min(most + 1), 0);
+        let read = loop {
+            match self.reader.read(&mut self.buffer[length..]) {
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                read => break read,
+            }
+        };
+        self.buffer.truncate(length + *read.as_ref().unwrap_or(&0));
+        self.is_at_end = read? == 0;
+        Ok(())
+    }
+
     /// Passes over a line that does not end within the buffer.
     fn pass_over(&mut self) -> io::Result<Block<'static>> {
         let number = self.lines + 1;
         let mut left = MOST_PASSED;
         loop {
-            if let Some(end) = last_end(&self.buffer) {
+            if let Some(end) = last_end(&self.buffer, 0) {
                 // Of what follows the line, the last block may hold more lines: only the first is passed over.
                 let first = first_end(&self.buffer).unwrap_or(end);
                 self.lines += ends(&self.buffer, first);
@@ -95,7 +141,7 @@ impl<R: Read> Blocks<R> {
             left = left.saturating_sub(passed);
             self.fill(LONGEST)?;
             self.is_at_end |= left == 0;
-            if self.is_at_end && last_end(&self.buffer).is_none() {
+            if self.is_at_end && last_end(&self.buffer, 0).is_none() {
                 self.buffer.clear();
                 return Ok(Block::TooLong(number));
             }
@@ -103,9 +149,9 @@ impl<R: Read> Blocks<R> {
     }
 }
 
-/// Where the last line ends that does not go on, if the buffer tells.
-fn last_end(buffer: &[u8]) -> Option<usize> {
-    (1..=buffer.len()).rev().find(|&end| is_end(buffer, end))
+/// Where the last line ends that does not go on, if the buffer tells; not before that place.
+fn last_end(buffer: &[u8], from: usize) -> Option<usize> {
+    (from.max(1)..=buffer.len()).rev().find(|&end| is_end(buffer, end))
 }
 
 fn first_end(buffer: &[u8]) -> Option<usize> {
@@ -151,7 +197,12 @@ mod tests {
     }
 
     fn in_blocks(bytes: &[u8], step: usize) -> Vec<Result<(usize, String), usize>> {
-        let mut blocks = Blocks::new(Slowly(bytes, step));
+        let all = all_of(Blocks::new(Slowly(bytes, step)));
+        assert_eq!(all_of(Blocks::live(Slowly(bytes, step))), all);
+        all
+    }
+
+    fn all_of(mut blocks: Blocks<Slowly<'_>>) -> Vec<Result<(usize, String), usize>> {
         let mut all = Vec::new();
         while let Some(block) = blocks.next().expect("memory can be read") {
             match block {
@@ -197,6 +248,11 @@ mod tests {
     }
 
     #[test]
+    fn a_mark_that_comes_alone_is_no_end() {
+        assert_eq!(in_blocks(b"\xef\xbb\xbfa", 3), [Ok((1, "a".to_owned()))]);
+    }
+
+    #[test]
     fn many_blocks_hold_the_same_lines() {
         let mut text = Vec::new();
         for k in 0..400_000 {
@@ -208,6 +264,12 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn live_lines_are_the_same(text in "(\u{feff}|\u{fefe}|)[a\\\\# \r\n]{0,30}", step in 1_usize..6) {
+            let bytes = text.as_bytes();
+            prop_assert_eq!(in_blocks(bytes, step), at_once(bytes));
+        }
+
         #[test]
         fn a_line_ends_where_it_ends_in_the_whole(text in "[a\\\\# \r\n]{0,30}") {
             // Wherever a block may end, the lines are the same.

@@ -32,13 +32,27 @@ pub struct PointReader<R> {
     is_first: bool,
     found: u64,
     is_done: bool,
+    /// What comes after the points that were read.
+    failure: Option<ReadError>,
+    /// Whether nothing may be waited for as long as there is something.
+    is_live: bool,
 }
 
 impl<R: Read> PointReader<R> {
     /// Reads from anything; it is read in large pieces. `name` is what messages call it.
     pub fn new(reader: R, name: impl Into<String>) -> Self {
-        let name = name.into();
-        Self { blocks: Blocks::new(reader), name, read: VecDeque::new(), is_first: true, found: 0, is_done: false }
+        Self::of(Blocks::new(reader), name.into(), false)
+    }
+
+    /// Reads from something whose other end may wait for an answer, such as a pipe: points are given out as soon as their lines have come whole, ended by
+    /// LF, as many as one call of `read` gives, up to some thousands.
+    pub fn live(reader: R, name: impl Into<String>) -> Self {
+        Self::of(Blocks::live(reader), name.into(), true)
+    }
+
+    fn of(blocks: Blocks<R>, name: String, is_live: bool) -> Self {
+        let read = VecDeque::new();
+        Self { blocks, name, read, is_first: true, found: 0, is_done: false, failure: None, is_live }
     }
 
     /// What it reads from, as far as it was read: at first untouched.
@@ -54,12 +68,18 @@ impl<R: Read> PointReader<R> {
     /// Puts the next points, at most so many and at least one, in the place of those in `points`. False at the end: then there are none.
     ///
     /// # Errors
-    /// [`ReadError::Invalid`] at the end if there was no point at all. With the first line that is wrong: points from the same megabyte
-    /// are not given out, what follows is read to tell everything that is wrong (for as much as a gigabyte), and there
-    /// are no further points. [`ReadError::Io`] if reading fails.
+    /// [`ReadError::Invalid`] at the end if there was no point at all, and with the first line that is wrong, after the points before it. What
+    /// follows that line is read to tell everything that is wrong (for as much as a gigabyte; of what is [`live`](PointReader::live), only what has
+    /// come with it), and there are no further points. [`ReadError::Io`] if reading fails.
     pub fn next(&mut self, most: usize, points: &mut Vec<PointLine>) -> Result<bool, ReadError> {
         points.clear();
-        while self.read.is_empty() && !self.is_done {
+        while self.read.is_empty() {
+            if let Some(failure) = self.failure.take() {
+                return Err(failure);
+            }
+            if self.is_done {
+                break;
+            }
             self.read_block()?;
         }
         points.extend(self.read.drain(..most.max(1).min(self.read.len())));
@@ -102,16 +122,57 @@ impl<R: Read> PointReader<R> {
                     }
                 }
             }
-            if faults.is_empty() || taken > MOST_AFTER_FAULT {
+            if faults.is_empty() || self.is_live || taken > MOST_AFTER_FAULT {
                 break;
             }
         }
-        if faults.is_empty() {
-            self.found += self.read.len() as u64;
-            return Ok(());
+        self.found += self.read.len() as u64;
+        if !faults.is_empty() {
+            self.is_done = true;
+            self.failure = Some(ReadError::Invalid(faults));
         }
-        self.is_done = true;
-        self.read.clear();
-        Err(ReadError::Invalid(faults))
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+    use std::rc::Rc;
+
+    /// Gives one piece of a text with each read, and counts them.
+    struct Pieces(Vec<&'static str>, Rc<Cell<usize>>);
+
+    impl Read for Pieces {
+        fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
+            let count = self.1.get();
+            self.1.set(count + 1);
+            let piece = self.0.get(count).copied().unwrap_or_default().as_bytes();
+            into[..piece.len()].copy_from_slice(piece);
+            Ok(piece.len())
+        }
+    }
+
+    #[test]
+    fn what_has_come_is_given_out_before_more_is_read() {
+        let pieces =
+            vec!["x y z ", "nx ny nz\n1 2 3", " 0 0 1\n1 2", " 4 0 0 1\r\n1 2 5 0 0 1\n", "1 2 6 0 0 1\n1 x\n"];
+        let reads = Rc::new(Cell::new(0));
+        let mut reader = PointReader::live(Pieces(pieces, reads.clone()), "pipe");
+        let mut points = Vec::new();
+        let mut next = |most| {
+            let more = reader.next(most, &mut points).map_err(|error| error.to_string())?;
+            Ok::<_, String>((more, points.iter().map(|p| p.point.z).collect::<Vec<_>>(), reads.get()))
+        };
+        assert_eq!(next(9), Ok((true, vec![3.0], 3)));
+        assert_eq!(next(1), Ok((true, vec![4.0], 4)));
+        assert_eq!(next(9), Ok((true, vec![5.0], 4)), "no read for what is there");
+        // Points before a line that is wrong, then the error without another read.
+        assert_eq!(next(9), Ok((true, vec![6.0], 5)));
+        let error = next(9).expect_err("not a point");
+        assert!(error.starts_with("pipe:6: ") && reads.get() == 5, "{error}");
+        assert_eq!(reader.next(9, &mut points).map_err(|error| error.to_string()), Ok(false));
+        assert_eq!(reader.found(), 4);
     }
 }

@@ -1,11 +1,11 @@
 //! `nusselt form-factors merge`: parts of a matrix put together.
 
-use super::{options, refused};
+use super::{options, patches, refused};
 use crate::args::Common;
 use crate::failure::Failure;
-use crate::output::{print, print_json};
+use crate::output::{clear, keep, print, print_json};
 use crate::summary::Lines;
-use nusselt::io::matrix::{FORM_FACTORS_SCHEMA, MatrixError, merge};
+use nusselt::io::matrix::{FORM_FACTORS_SCHEMA, MatrixError, merge, read_patches};
 use serde_json::json;
 use std::path::PathBuf;
 
@@ -23,16 +23,27 @@ pub(super) struct Merge {
     /// Write to this file, as form-factors does: the same, byte by byte, as if all rows had been computed in one run
     #[arg(short, long, value_name = "FILE", value_parser = options::parse_output)]
     output: PathBuf,
+    /// Write the patches to this file, as form-factors does: .csv or .obj
+    #[arg(long, value_name = "FILE", value_parser = options::parse_patches)]
+    patches: Option<PathBuf>,
 }
 
 impl Merge {
     pub(super) fn run(&self, common: &Common) -> Result<(), Failure> {
-        merge(&self.parts, &self.output).map_err(|error| match error {
+        let refused = |error| match error {
             MatrixError::Io { path, source } if self.parts.contains(&path) => {
                 Failure::Work(format!("cannot read {}: {source}; check the name and the folder", path.display()))
             }
             _ => refused(&self.output, error),
-        })?;
+        };
+        let outputs = || [Some(&self.output), self.patches.as_ref()].into_iter().flatten().map(PathBuf::as_path);
+        keep(&self.parts, self.patches.iter().map(PathBuf::as_path))?;
+        patches::keep_apart(self.patches.as_deref(), Some(&self.output))?;
+        outputs().for_each(clear);
+        merge(&self.parts, &self.output).map_err(refused)?;
+        if let (Some(path), Some(part)) = (&self.patches, self.parts.first()) {
+            patches::write(path, &read_patches(part).map_err(refused)?)?;
+        }
         let (parts, output) = (self.parts.len(), self.output.display());
         if common.json {
             return print_json(&json!({ "schema": FORM_FACTORS_SCHEMA, "parts": parts, "wrote": output.to_string() }));

@@ -4,6 +4,7 @@ mod certify;
 mod enforce;
 mod merge;
 mod options;
+mod patches;
 mod reciprocity;
 mod report;
 mod tally;
@@ -31,6 +32,9 @@ Examples: the matrix of a room, polygon by polygon, for numpy.load
 In patches of at most half a metre, as a table, and on again after an interruption
   nusselt form-factors room.obj --patch 0.5 -o room.csv
   nusselt form-factors room.obj --patch 0.5 -o room.csv --resume
+
+The same for numpy.load, and where each patch is
+  nusselt form-factors room.obj --patch 0.5 -o room.npy --patches room-patches.csv
 
 On two machines, then put together: the same file
   nusselt form-factors city.obj --rows 0..5000 -o a.rows
@@ -66,6 +70,10 @@ pub(crate) struct FormFactors {
     /// [default: CSV on standard output; with --json nothing but the summary]
     #[arg(short, long, value_name = "FILE", value_parser = options::parse_output)]
     output: Option<PathBuf>,
+    /// Write the patches to this file, in the order of rows and columns: .csv (row,name,polygon,area, center and normal), or .obj with a group
+    /// for each; before any row is computed
+    #[arg(long, value_name = "FILE", value_parser = options::parse_patches)]
+    patches: Option<PathBuf>,
     /// Go on with an interrupted run, whose rows are in FILE.partial; the result is the same, byte by byte
     #[arg(long, requires = "output")]
     resume: bool,
@@ -96,7 +104,8 @@ impl FormFactors {
         }
         let Some(file) = &self.scene else { return Err(Failure::Usage("name a scene".to_owned())) };
         let outputs = self.output.as_deref().map(MatrixWriter::files);
-        let outputs = outputs.iter().flatten().map(PathBuf::as_path);
+        let outputs = outputs.iter().flatten().chain(&self.patches).map(PathBuf::as_path);
+        patches::keep_apart(self.patches.as_deref(), self.output.as_deref())?;
         let (scene, load_s) = load(file, outputs, &self.loading, common)?;
         let start = Instant::now();
         let exchange = self.prepare(file, &scene)?;
@@ -106,6 +115,9 @@ impl FormFactors {
         // Before anything is written.
         let proved = self.certify.map(|by| certify::prove_sample(file, &scene, exchange.patches(), rows.clone(), by));
         let proved = proved.transpose()?;
+        if let Some(path) = &self.patches {
+            patches::write(path, exchange.patches())?;
+        }
         let mut tally = Tally::new(exchange.patches(), rows.clone(), self.tolerance, self.two_sided);
         let mut work = Work { file, exchange: &exchange, tally: &mut tally, times: &mut times, quiet: common.quiet };
         let mut enforced = None;
@@ -171,6 +183,7 @@ fn refused(scene: &Path, error: MatrixError) -> Failure {
             Failure::Usage(error.to_string())
         }
         MatrixError::WouldOverwrite { .. } | MatrixError::NoParts => Failure::Usage(error.to_string()),
+        MatrixError::BadArea { .. } => Failure::about(scene, &error),
         MatrixError::Unfinished { path } => {
             let path = path.display();
             Failure::Work(format!("{path} is there from an unfinished run; go on with --resume, or delete it"))

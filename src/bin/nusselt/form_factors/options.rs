@@ -3,7 +3,7 @@
 use crate::summary::number;
 use glam::DVec3;
 use nusselt::factors::PatchPlan;
-use nusselt::io::matrix::MatrixFormat;
+use nusselt::io::matrix::{MatrixFormat, PatchesFormat};
 use nusselt::scene::Scene;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -56,6 +56,13 @@ pub(super) fn parse_tolerance(text: &str) -> Result<f64, String> {
 
 fn positive(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0)
+}
+
+pub(super) const NOT_PATCHES: &str = "patches are written as .csv or .obj";
+
+pub(super) fn parse_patches(text: &str) -> Result<PathBuf, String> {
+    let path = PathBuf::from(text);
+    if PatchesFormat::of(&path).is_some() { Ok(path) } else { Err(NOT_PATCHES.to_owned()) }
 }
 
 pub(super) fn parse_rows(text: &str) -> Result<Range<u32>, String> {

@@ -144,7 +144,7 @@ mod tests {
     const COUNT: u32 = 20;
 
     fn patches() -> Vec<PatchInfo> {
-        let patch = |k| PatchInfo { name: String::new(), polygon: PolygonId(k), area: f64::from(k + 1) };
+        let patch = |k| PatchInfo { name: String::new(), polygon: PolygonId(k), area: f64::from(k + 1), shape: None };
         (0..COUNT).map(patch).collect()
     }
 

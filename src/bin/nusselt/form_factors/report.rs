@@ -63,8 +63,8 @@ pub(super) struct Report<'a> {
     background_mean: f64,
     /// How far the factors of a row are from summing to 1, at most.
     worst_closure: f64,
-    /// The same before any residue was placed.
-    worst_closure_raw: f64,
+    /// The same before any residue was placed: the largest residue.
+    worst_residue: f64,
     /// `null` where backs count as their patches: that is not reciprocal.
     reciprocity: Option<Defects>,
     /// What `--enforce-reciprocity` changed; all else is told of the factors before.
@@ -131,7 +131,7 @@ impl<'a> Report<'a> {
             factors: tally.factors,
             background_mean: tally.background_mean(),
             worst_closure: tally.worst_closure,
-            worst_closure_raw: tally.worst_closure_raw,
+            worst_residue: tally.worst_residue,
             reciprocity: tally.defects(),
             enforced: None,
             largest_estimate: tally.largest_estimate,
@@ -153,7 +153,7 @@ impl<'a> Report<'a> {
         };
         let [start, end] = self.rows;
         lines.add("rows", format!("{start}..{end}, {} computed{kept}", self.rows_computed));
-        let [closure, raw] = [self.worst_closure, self.worst_closure_raw].map(number);
+        let [closure, raw] = [self.worst_closure, self.worst_residue].map(number);
         lines
             .add("factors", format!("{}, rows within {closure} of 1, {raw} before residues were placed", self.factors));
         lines.add("background", format!("{:.8} on average", self.background_mean));

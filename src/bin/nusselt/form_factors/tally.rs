@@ -20,7 +20,7 @@ pub(super) struct Tally<'p> {
     background: f64,
     /// How far a row of a patch with area is from summing to 1, at most: at last, and before any residue was placed.
     pub(super) worst_closure: f64,
-    pub(super) worst_closure_raw: f64,
+    pub(super) worst_residue: f64,
     pub(super) largest_estimate: f64,
     /// Rows with an estimate above the tolerance.
     pub(super) rows_above: usize,
@@ -40,7 +40,7 @@ impl<'p> Tally<'p> {
             factors: 0,
             background: 0.0,
             worst_closure: 0.0,
-            worst_closure_raw: 0.0,
+            worst_residue: 0.0,
             largest_estimate: 0.0,
             rows_above: 0,
             reciprocity: (!two_sided).then(|| Reciprocity::new(patches, rows, tolerance)),
@@ -68,7 +68,7 @@ impl<'p> Tally<'p> {
             self.with_area += 1;
             self.background += row.background.factor;
             self.worst_closure = self.worst_closure.max((row.sum() - 1.0).abs());
-            self.worst_closure_raw = self.worst_closure_raw.max((row.closure_raw - 1.0).abs());
+            self.worst_residue = self.worst_residue.max((row.closure_raw - 1.0).abs());
         }
         let shares = row.entries.iter().map(|entry| entry.share).chain([row.backs, row.background]);
         let estimate = shares.fold(0.0, |largest: f64, share| largest.max(share.error));
@@ -122,7 +122,7 @@ mod tests {
 
     #[test]
     fn rows_above_the_tolerance_are_counted_and_patches_without_area_are_not_open() {
-        let patch = |area| PatchInfo { name: String::new(), polygon: PolygonId(0), area };
+        let patch = |area| PatchInfo { name: String::new(), polygon: PolygonId(0), area, shape: None };
         let patches = [patch(1.0), patch(0.0), patch(2.0)];
         let share = |factor, error| Share { factor, error };
         let row = |patch, entries, background, closure_raw| Row {
@@ -138,7 +138,7 @@ mod tests {
         tally.add(&row(2, vec![Entry { column: 0, share: share(0.25, 0.0) }], share(0.75, 2e-3), 1.0));
         assert_eq!((tally.kept, tally.computed, tally.factors, tally.zero_area()), (1, 2, 2, 1));
         assert_eq!((tally.rows_above, tally.largest_estimate), (1, 2e-3), "equal to the tolerance is not above it");
-        assert!(tally.worst_closure == 0.0 && (tally.worst_closure_raw - 1e-4).abs() < 1e-15);
+        assert!(tally.worst_closure == 0.0 && (tally.worst_residue - 1e-4).abs() < 1e-15);
         assert!((tally.background_mean() - 0.625).abs() < 1e-15);
         assert_eq!(tally.defects().map(|defects| (defects.largest, defects.pairs)), Some((0.0, 1)));
         assert_eq!(Tally::new(&patches, 0..3, 1e-3, true).defects(), None);

@@ -15,7 +15,7 @@ use nusselt::io::{PointFactorsFormat, PointFactorsWriter, PointLine};
 use nusselt::scene::Scene;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use report::{Report, Totals};
-use std::io::{self, BufWriter, ErrorKind};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -36,7 +36,8 @@ From standard input to standard output
 pub(crate) struct PointFactorsOf {
     /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON
     scene: PathBuf,
-    /// The points, one a line: x y z nx ny nz [polygon], separated by commas or blanks; - is standard input. Where a
+    /// The points, one a line: x y z nx ny nz [polygon], separated by commas or blanks; - is standard input, of which
+    /// points are answered as soon as their lines have come. Where a
     /// polygon is named, stand on it where it is nearest, on the side that the normal shows. They are read as they
     /// are needed: there may be any number
     #[arg(long, value_name = "P.csv")]
@@ -106,7 +107,7 @@ impl PointFactorsOf {
                 let mut totals = Totals::default();
                 write_results(path, |out| {
                     let mut writer = PointFactorsWriter::new(out, *format, &scene, self.by)?;
-                    totals = work.run(|point, factors| writer.write(point.point, point.normal, factors))?;
+                    totals = work.run(|points, factors| write(&mut writer, points, factors))?;
                     writer.finish()?;
                     Ok(())
                 })?;
@@ -134,10 +135,22 @@ impl PointFactorsOf {
     fn print_all(&self, work: &Work<'_>, scene: &Scene) -> Result<(), Unwritten> {
         let out = BufWriter::with_capacity(1 << 16, io::stdout());
         let mut writer = PointFactorsWriter::new(out, PointFactorsFormat::Csv, scene, self.by)?;
-        work.run(|point, factors| writer.write(point.point, point.normal, factors))?;
+        work.run(|points, factors| {
+            write(&mut writer, points, factors)?;
+            // Who asked may wait for them.
+            writer.flush()
+        })?;
         writer.finish()?;
         Ok(())
     }
+}
+
+fn write<W: Write + Send>(
+    writer: &mut PointFactorsWriter<W>,
+    points: &[PointLine],
+    factors: &[PointFactors],
+) -> io::Result<()> {
+    points.iter().zip(factors).try_for_each(|(point, factors)| writer.write(point.point, point.normal, factors))
 }
 
 /// So many bytes of factors are in memory at a time.
@@ -156,8 +169,9 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Reads points, computes their factors in all threads, and hands them on in their order.
-    fn run(&self, mut write: impl FnMut(&PointLine, &PointFactors) -> io::Result<()>) -> Result<Totals, Unwritten> {
+    /// Reads points, computes their factors in all threads, and hands them on in their order: some at a time, and all before a point that there are none
+    /// of.
+    fn run(&self, mut write: impl FnMut(&[PointLine], &[PointFactors]) -> io::Result<()>) -> Result<Totals, Unwritten> {
         let mut progress = Progress::new("points", self.count, self.quiet);
         let mut reader = self.points.open()?;
         let most = self.chunk();
@@ -165,10 +179,19 @@ impl Work<'_> {
         let mut chunk = Vec::new();
         while reader.next(most, &mut chunk).map_err(|error| Failure::Work(error.to_string()))? {
             let solved: Vec<_> = chunk.par_iter().map(|point| self.solve(point)).collect();
-            for (point, solved) in chunk.iter().zip(solved) {
-                let (factors, ms) = solved?;
+            let mut all = Vec::with_capacity(chunk.len());
+            let failure = solved.into_iter().find_map(|solved| {
+                let (factors, ms) = match solved {
+                    Ok(solved) => solved,
+                    Err(failure) => return Some(failure),
+                };
                 totals.add(&factors, ms);
-                write(point, &factors)?;
+                all.push(factors);
+                None
+            });
+            write(&chunk, &all)?;
+            if let Some(failure) = failure {
+                return Err(failure.into());
             }
             progress.add(chunk.len());
         }
