@@ -15,9 +15,9 @@ use std::collections::BinaryHeap;
 
 /// Few points are enough where no more than so many times what is allowed would arrive with nothing between.
 const SMALL: f64 = 8.0;
-/// The part of that which few points may be wrong by: kinks take away up to a fifteenth in the mean over a side, and not along both.
+/// The part of that which few points are taken to be wrong by at least; like the next one, chosen by what entries of dense cities were off by.
 const OF_FEW: f64 = 0.1;
-/// The part of it which a shadow may take away that none of many points has seen: they are nowhere farther from each other, along a side, than a quarter of it.
+/// The part of it which a shadow is taken to cover that none of many points has seen.
 const OF_MANY: f64 = 0.015;
 
 /// Two elements with what is between them.
