@@ -74,8 +74,8 @@ fn patches() -> Vec<PatchInfo> {
 fn shape(k: u32) -> Option<PatchShape> {
     let at = |x: u32, y: f64| DVec3::new(f64::from(x) / 7.0, y, -f64::from(k) / 8.0);
     let piece = |x: u32| vec![at(x, 0.0), at(x + 1, 0.0), at(x, 0.1)];
-    let pieces = (0..1 + k % 2).map(|x| piece(3 * x)).collect();
-    let normal = (k % 3 > 0).then_some(DVec3::new(0.6, 0.0, -0.8));
+    let pieces = (0..=k % 2).map(|x| piece(3 * x)).collect();
+    let normal = (!k.is_multiple_of(3)).then_some(DVec3::new(0.6, 0.0, -0.8));
     (k > 0).then(|| PatchShape { center: at(k, 0.05), normal, pieces })
 }
 
