@@ -7,8 +7,21 @@ use std::path::{Path, PathBuf};
 /// From the lowest to the highest; each may use those before it.
 ///
 /// The verifiers come before what they verify, so that they cannot share anything with it.
-const LAYERS: [&str; 13] = [
-    "exact", "scene", "verify", "bsp", "bvh", "contour", "integral", "brdf", "factors", "hemicube", "samples", "io",
+const LAYERS: [&str; 15] = [
+    "exact",
+    "scene",
+    "verify",
+    "bsp",
+    "bvh",
+    "contour",
+    "integral",
+    "brdf",
+    "factors",
+    "radiosity",
+    "picture",
+    "hemicube",
+    "samples",
+    "io",
     "testing",
 ];
 
