@@ -1,69 +1,22 @@
 //! Certificates on the command line: kept, checked again, and refused when anything that matters was changed.
 #![cfg(feature = "cli")]
 
+mod common;
+
+use common::program::Folder;
 use serde_json::{Value, json};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
-/// A folder of its own for each test, with the Cornell box and a room in it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("certificate-{name}-{}", std::process::id()));
-        // Left over from a run that was stopped.
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).expect("a folder for tests");
-        let folder = Self(path);
-        folder.run("scene cornell -o box.obj", 0);
-        folder.run("scene room --polygons 150 --seed 5 -o room.obj", 0);
-        folder
-    }
-
-    /// Runs the program in the folder; checks the exit code, and that failures are one line.
-    fn run(&self, line: &str, code: i32) -> String {
-        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_nusselt"))
-            .args(line.split_whitespace())
-            .current_dir(&self.0)
-            .output()
-            .expect("the program runs");
-        let [stdout, stderr] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).expect("UTF-8"));
-        assert_eq!(status.code(), Some(code), "{line}\n{stdout}\n{stderr}");
-        if code == 0 {
-            return stdout;
-        }
-        assert_eq!(stdout, "", "{line}");
-        assert!(stderr.starts_with("nusselt: ") && stderr.lines().count() == 1, "{line}: {stderr}");
-        stderr
-    }
-
-    fn parsed(&self, line: &str) -> Value {
-        serde_json::from_str(&self.run(line, 0)).expect("JSON")
-    }
-
-    fn json(&self, name: &str) -> Value {
-        serde_json::from_slice(&fs::read(self.0.join(name)).expect("written")).expect("JSON")
-    }
-
-    fn write(&self, name: &str, bytes: impl AsRef<[u8]>) {
-        fs::write(self.0.join(name), bytes).expect("writable");
-    }
-
-    fn exists(&self, name: &str) -> bool {
-        self.0.join(name).exists()
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
+/// A folder with the Cornell box and a room in it.
+fn folder(name: &str) -> Folder {
+    let folder = Folder::new(&format!("certificate-{name}"));
+    folder.run("scene room --polygons 150 --seed 5 -o room.obj", 0);
+    folder
 }
 
 #[test]
 fn kept_certificates_hold_when_read_again() {
-    let folder = Folder::new("round");
+    let folder = folder("round");
     for (scene, view, domain) in [
         ("box.obj", "--eye 278,273,-100 --sphere", "sphere"),
         ("box.obj", "--eye 278,273,200 --normal 0.1,-0.2,0.3", "hemisphere"),
@@ -96,7 +49,7 @@ fn kept_certificates_hold_when_read_again() {
 
 #[test]
 fn a_proof_is_told_in_words_and_numbers() {
-    let folder = Folder::new("words");
+    let folder = folder("words");
     let line = "contour box.obj --eye 278,273,-100 --sphere";
     let words = folder.run(&format!("{line} --certify -o x.json"), 0);
     assert!(words.contains("proof        holds for all directions; kernel arithmetic, "), "{words}");
@@ -118,11 +71,11 @@ fn a_proof_is_told_in_words_and_numbers() {
 
 #[test]
 fn certificates_never_replace_what_is_read_or_written() {
-    let folder = Folder::new("keep");
-    fs::copy(folder.0.join("box.obj"), folder.0.join("scene.obj")).expect("a copy");
-    let scene = fs::read_to_string(folder.0.join("box.obj")).expect("written").replace("box.mtl", "lib.json");
+    let folder = folder("keep");
+    fs::copy(folder.path("box.obj"), folder.path("scene.obj")).expect("a copy");
+    let scene = fs::read_to_string(folder.path("box.obj")).expect("written").replace("box.mtl", "lib.json");
     folder.write("odd.obj", scene);
-    fs::copy(folder.0.join("box.mtl"), folder.0.join("lib.json")).expect("a copy");
+    fs::copy(folder.path("box.mtl"), folder.path("lib.json")).expect("a copy");
     for (line, named) in [
         ("contour box.obj --eye 1,2,3 --sphere --certify=exact", "there are kernel and rational"),
         ("contour box.obj --eye 1,2,3 --sphere --certify=", "--certify"),
@@ -144,7 +97,7 @@ fn certificates_never_replace_what_is_read_or_written() {
 
 #[test]
 fn a_changed_certificate_does_not_hold() {
-    let folder = Folder::new("tamper");
+    let folder = folder("tamper");
     folder.run("contour box.obj --eye 278,273,-100 --normal 0,0,1 --certificate kept.json", 0);
     let kept = folder.json("kept.json");
     let refused = |what: &str, change: &dyn Fn(&mut Value)| {
@@ -208,7 +161,7 @@ fn a_changed_certificate_does_not_hold() {
 
 #[test]
 fn a_changed_scene_is_told() {
-    let folder = Folder::new("scene");
+    let folder = folder("scene");
     folder.run("contour box.obj --eye 278,273,-100 --sphere --certificate kept.json", 0);
     let message = folder.run("verify room.obj kept.json", 1);
     assert!(message.contains("28 vertices, 16 polygons and 17 convex pieces") && message.contains("150 polygons"));
@@ -224,16 +177,16 @@ fn a_changed_scene_is_told() {
     assert!(message.contains("two.json: the certificate does not hold for two.obj: "), "{message}");
     assert!(message.contains("shows piece 1, which piece 0 hides") && message.contains("was changed"), "{message}");
     // Colours are not part of the claim.
-    let library = fs::read_to_string(folder.0.join("box.mtl")).expect("written");
+    let library = fs::read_to_string(folder.path("box.mtl")).expect("written");
     folder.write("box.mtl", library.replace("Kd", "# Kd"));
     folder.run("verify box.obj kept.json", 0);
 }
 
 #[test]
 fn files_that_are_no_certificates_are_refused_with_their_name() {
-    let folder = Folder::new("bad");
+    let folder = folder("bad");
     folder.run("contour box.obj --eye 278,273,-100 --sphere --certificate kept.json -o image.json", 0);
-    let kept = fs::read(folder.0.join("kept.json")).expect("written");
+    let kept = fs::read(folder.path("kept.json")).expect("written");
     folder.write("empty.json", "");
     folder.write("cut.json", &kept[..kept.len() * 2 / 3]);
     folder.write("bytes.json", [0xff, 0, 0x80]);

@@ -1,57 +1,12 @@
 //! Cameras and windows on the command line.
 #![cfg(feature = "cli")]
 
+mod common;
+
+use common::program::Folder;
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-/// A folder of its own for each test, with the Cornell box in it.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Self {
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("domains-{name}-{}", std::process::id()));
-        // Left over from a run that was stopped.
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).expect("a folder for tests");
-        let folder = Self(path);
-        folder.run("scene cornell -o box.obj", 0);
-        folder
-    }
-
-    /// Runs the program in the folder; checks the exit code, and that failures are one line.
-    fn run(&self, line: &str, code: i32) -> String {
-        let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_nusselt"))
-            .args(line.split_whitespace())
-            .current_dir(&self.0)
-            .output()
-            .expect("the program runs");
-        let [stdout, stderr] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).expect("UTF-8"));
-        assert_eq!(status.code(), Some(code), "{line}\n{stdout}\n{stderr}");
-        if code == 0 {
-            return stdout;
-        }
-        assert_eq!(stdout, "", "{line}");
-        assert!(stderr.starts_with("nusselt: ") && stderr.lines().count() == 1, "{line}: {stderr}");
-        stderr
-    }
-
-    fn parsed(&self, line: &str) -> Value {
-        serde_json::from_str(&self.run(line, 0)).expect("JSON")
-    }
-
-    fn read(&self, name: &str) -> String {
-        fs::read_to_string(self.0.join(name)).expect("written")
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
@@ -64,7 +19,7 @@ fn vector(value: &Value) -> DVec3 {
 
 #[test]
 fn a_camera_sees_what_its_angles_say() {
-    let folder = Folder::new("camera");
+    let folder = Folder::new("domains-camera");
     let line = "contour box.obj --eye 278,273,-800 --look-at 278,273,0 --fov 60 --up 0,1,0";
     let image = folder.parsed(&format!("{line} --aspect 16/9 --json --certify"));
     let domain = &image["domain"];
@@ -103,7 +58,7 @@ fn a_camera_sees_what_its_angles_say() {
 
 #[test]
 fn windows_show_how_much_of_a_lamp_is_seen() {
-    let folder = Folder::new("windows");
+    let folder = Folder::new("domains-windows");
     // The floor is polygon 0 and the lamp polygon 1.
     let whole = folder.parsed("contour box.obj --eye 278,273,0 --on 0 --json");
     let lamp = |image: &Value| {
@@ -144,7 +99,7 @@ fn windows_show_how_much_of_a_lamp_is_seen() {
 
 #[test]
 fn wrong_cameras_and_windows_are_told_before_any_work_is_done() {
-    let folder = Folder::new("wrong");
+    let folder = Folder::new("domains-wrong");
     for (rest, named) in [
         ("--look-at 1,2,3 --fov 60", "--look-at is --eye"),
         ("--look-at 1,2,4", "--fov"),
@@ -178,5 +133,5 @@ fn wrong_cameras_and_windows_are_told_before_any_work_is_done() {
         let message = folder.run(&line, 2);
         assert!(message.contains(named), "{line}: {message}");
     }
-    assert_eq!(fs::read_dir(&folder.0).expect("a folder").count(), 2, "the scene and its materials");
+    assert_eq!(fs::read_dir(folder.path(".")).expect("a folder").count(), 2, "the scene and its materials");
 }

@@ -76,7 +76,7 @@ fn a_kept_state_is_gone_on_from() {
         let error = folder.run(&format!("{change} --state a.state --resume"), 1);
         assert!(error.contains(what), "{error}");
     }
-    std::fs::write(folder.path("a.state"), "{\"schema\":").expect("written");
+    folder.write("a.state", "{\"schema\":");
     let error = folder.run(&format!("{line} --state a.state --resume"), 1);
     assert!(error.contains("a.state") && error.contains("start anew"), "{error}");
 }
@@ -84,14 +84,14 @@ fn a_kept_state_is_gone_on_from() {
 #[test]
 fn what_is_wrong_is_said_in_one_line() {
     let folder = Folder::new("radiosity-wrong");
-    std::fs::write(folder.path("dark.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    folder.write("dark.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     for (line, code, what) in [
         ("radiosity box.obj --patch 0", 2, "above 0"),
         ("radiosity box.obj --until 0", 2, "1e-13 to 1"),
         ("radiosity box.obj --until 0.1 --full", 2, "--full"),
         ("radiosity box.obj --resume", 2, "--state"),
         ("radiosity box.obj -o a.stl", 2, ".html"),
-        ("radiosity box.obj -o a.glb -o a.glb", 2, "twice"),
+        ("radiosity box.obj -o a.glb -o a.glb", 2, "written twice"),
         ("radiosity box.obj --patch 1e-3", 1, "take a longer edge"),
         ("radiosity dark.obj", 1, "no polygon emits"),
         ("radiosity none.obj", 1, "none.obj"),

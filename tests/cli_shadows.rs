@@ -61,7 +61,7 @@ fn what_is_wrong_is_said_in_one_line() {
         ("shadows box.obj --light 1,2,3 -o x.stl", 2, "neither .obj nor .glb"),
         ("shadows box.obj --light 1,2,3 -o box.obj", 2, "would overwrite"),
         ("shadows box.obj --light 1,2,3 -o box.mtl", 2, "neither .obj nor .glb"),
-        ("shadows box.obj --light 1,2,3 -o a.obj -o a.obj", 2, "given twice"),
+        ("shadows box.obj --light 1,2,3 -o a.obj -o a.obj", 2, "written twice"),
         ("shadows none.obj --light 1,2,3", 1, "none.obj"),
         ("shadows box.obj --light 1,2,3 -o nowhere/x.glb", 1, "make its directory first"),
     ] {

@@ -100,6 +100,19 @@ pub(crate) fn written(output: &Path) -> Vec<PathBuf> {
     [Some(output.to_owned()), library].into_iter().flatten().collect()
 }
 
+/// Refuses a file that two outputs would write.
+pub(crate) fn check_once<'a>(outputs: impl Iterator<Item = &'a Path>) -> Result<(), Failure> {
+    let mut before: Vec<PathBuf> = Vec::new();
+    for output in outputs {
+        let files = written(output);
+        if before.iter().any(|other| files.iter().any(|file| is_same_file(file, other))) {
+            return Err(Failure::Usage(format!("{} would be written twice; name each file once", output.display())));
+        }
+        before.extend(files);
+    }
+    Ok(())
+}
+
 /// Refuses outputs that would replace one of the files that are read.
 pub(crate) fn keep<'a>(files: &[PathBuf], outputs: impl Iterator<Item = &'a Path>) -> Result<(), Failure> {
     for output in outputs {

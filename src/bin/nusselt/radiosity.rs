@@ -3,7 +3,7 @@
 use crate::args::{Common, Loading};
 use crate::failure::Failure;
 use crate::input::load;
-use crate::output::{is_same_file, print, print_json, write_file};
+use crate::output::{check_once, print, print_json, write_file};
 use crate::progress::Progress;
 use crate::summary::{Lines, Timing, number};
 use nusselt::contour::SceneOrder;
@@ -116,11 +116,7 @@ impl Radiosity {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         let files: Vec<&Path> =
             self.output.iter().map(|output| output.path.as_path()).chain(self.state.as_deref()).collect();
-        for (k, file) in files.iter().enumerate() {
-            if files[..k].iter().any(|other| is_same_file(other, file)) {
-                return Err(Failure::Usage(format!("{} is written twice; name each file once", file.display())));
-            }
-        }
+        check_once(files.iter().copied())?;
         let (scene, load_s) = load(&self.scene, files.iter().copied(), &self.loading, common)?;
         let (patches, of) = self.mesh(&scene)?;
         let start = Instant::now();

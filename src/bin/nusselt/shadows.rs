@@ -3,7 +3,7 @@
 use crate::args::{Common, Loading, parse_point};
 use crate::failure::Failure;
 use crate::input::load;
-use crate::output::{is_same_file, print, print_json, write_file, write_obj};
+use crate::output::{check_once, print, print_json, write_file, write_obj};
 use crate::summary::{Lines, Timing, number, vector};
 use glam::DVec3;
 use nusselt::bvh::SceneBvh;
@@ -60,12 +60,7 @@ impl Output {
 
 impl ShadowsOf {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
-        for (k, output) in self.output.iter().enumerate() {
-            if self.output[..k].iter().any(|other| is_same_file(other.path(), output.path())) {
-                let path = output.path().display();
-                return Err(Failure::Usage(format!("-o {path} is given twice; name each file once")));
-            }
-        }
+        check_once(self.output.iter().map(Output::path))?;
         let (scene, load_s) = load(&self.scene, self.output.iter().map(Output::path), &self.loading, common)?;
         let start = Instant::now();
         let bvh = SceneBvh::build(&scene);

@@ -5,6 +5,7 @@ use crate::bvh::Hierarchy;
 use crate::contour::ViewError;
 use crate::contour::polygon::Span;
 use crate::contour::regions::mosaic::Mosaic;
+use crate::contour::tree::divide::Division;
 use crate::contour::view::Sight;
 use crate::scene::PieceId;
 use glam::DVec3;
@@ -25,7 +26,7 @@ impl<'a> Cast<'a> {
         let skeleton = sight.skeleton;
         let (mut arcs, mut faces) = (Vec::new(), Vec::new());
         let (mut parts, mut edge_on) = (Vec::new(), Vec::new());
-        let (mut cut, mut steps, mut found) = (Vec::new(), Vec::new(), Vec::new());
+        let mut division = Division::default();
         for piece in hierarchy.scene.pieces() {
             let Some(shown) = skeleton.shown_side(piece, sight.eye) else {
                 edge_on.push(piece.id());
@@ -33,13 +34,10 @@ impl<'a> Cast<'a> {
             };
             sight.look_at(piece, hierarchy.panels.sides(piece.id().0), shown);
             let Sight { contour, buffers, .. } = &mut sight;
-            cut.clear();
-            let whole = Span::keep(&buffers.polygon, &mut cut);
-            found.clear();
-            contour.divide(skeleton, piece.id(), whole, &mut cut, &mut steps, &mut found, &mut buffers.work);
-            for part in &found {
+            contour.divide(skeleton, piece.id(), &buffers.polygon, &mut division, &mut buffers.work);
+            for part in &division.parts {
                 parts.push((piece.id(), part.is_seen));
-                faces.push(Span::keep(&cut[part.boundary.range()], &mut arcs));
+                faces.push(Span::keep(&division.arcs[part.boundary.range()], &mut arcs));
             }
             if parts.len() > most_parts {
                 return Err(ViewError::TooManyCells { limit: most_parts });

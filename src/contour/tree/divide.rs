@@ -14,9 +14,18 @@ pub(crate) struct Part {
     pub(crate) boundary: Span,
 }
 
+/// A polygon that is cut, in memory that is used again from one to the next.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Division {
+    /// The sides of the whole and of all parts.
+    pub(crate) arcs: Vec<PolygonArc>,
+    pub(crate) parts: Vec<Part>,
+    steps: Vec<Step>,
+}
+
 /// What is left to do.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Step {
+enum Step {
     Go(Link, Span),
     /// All parts from number `first` on make up `whole`.
     Join {
@@ -27,20 +36,19 @@ pub(crate) enum Step {
 
 impl ContourTree {
     /// Cuts the projection of a piece that was put in before, and in front of which there may be others: into convex parts
-    /// that are seen and that are not, as few as the nodes above them allow. Its sides are kept in `arcs`, as are those of the parts.
-    #[allow(clippy::too_many_arguments, reason = "buffers are lent by the caller")]
+    /// that are seen and that are not, as few as the nodes above them allow.
     pub(crate) fn divide(
         &mut self,
         skeleton: &Skeleton,
         piece: PieceId,
-        whole: Span,
-        arcs: &mut Vec<PolygonArc>,
-        steps: &mut Vec<Step>,
-        parts: &mut Vec<Part>,
+        polygon: &[PolygonArc],
+        division: &mut Division,
         work: &mut Workspace,
     ) {
-        steps.clear();
-        steps.push(Step::Go(self.root, whole));
+        let Division { arcs, parts, steps } = division;
+        arcs.clear();
+        parts.clear();
+        steps.push(Step::Go(self.root, Span::keep(polygon, arcs)));
         while let Some(step) = steps.pop() {
             let (link, boundary) = match step {
                 Step::Go(link, boundary) => (link, boundary),

@@ -8,7 +8,7 @@ use crate::args::{
 };
 use crate::failure::Failure;
 use crate::input::{build_order, check_way, load, way};
-use crate::output::{is_same_file, print, print_json, write_file, write_obj, written};
+use crate::output::{check_once, print, print_json, write_file, write_obj};
 use crate::proof::{Proof, prove};
 use crate::summary::Timing;
 use glam::DVec3;
@@ -203,22 +203,7 @@ impl Contour {
     /// What can be told to be wrong before any work is done; the projection to draw in.
     fn check(&self) -> Result<Projection, Failure> {
         let usage = |message: String| Err(Failure::Usage(message));
-        for (k, output) in self.output.iter().enumerate() {
-            let path = output.path.display();
-            if self.output[..k].iter().any(|other| is_same_file(&other.path, &output.path)) {
-                return usage(format!("-o {path} is given twice; name each file once"));
-            }
-        }
-        if let Some(certificate) = &self.certificate
-            && self
-                .output
-                .iter()
-                .flat_map(|output| written(&output.path))
-                .any(|other| is_same_file(&other, certificate))
-        {
-            let path = certificate.display();
-            return usage(format!("--certificate {path} is also written by -o; name each file once"));
-        }
+        check_once(self.output.iter().map(|output| &output.path).chain(&self.certificate).map(PathBuf::as_path))?;
         let has_horizon = self.normal.is_some() || self.on.is_some();
         let default = match self.look_at {
             Some(_) => Projection::Gnomonic,
