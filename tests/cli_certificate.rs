@@ -82,7 +82,7 @@ fn certificates_never_replace_what_is_read_or_written() {
         ("contour box.obj --eye 1,2,3 --sphere --certificate kept", ".json"),
         ("contour box.obj --eye 1,2,3 --sphere --certificate box.obj", ".json"),
         ("contour box.obj --eye 1,2,3 --sphere --certificate", "--certificate"),
-        ("contour box.obj --eye 1,2,3 --sphere --certificate x.json -o ./x.json", "also written by -o"),
+        ("contour box.obj --eye 1,2,3 --sphere --certificate x.json -o ./x.json", "written twice"),
         ("contour odd.obj --eye 1,2,3 --sphere --certificate ./lib.json", "would overwrite"),
         ("verify box.obj", "<CERTIFICATE>"),
         ("verify box.obj kept.json --certify", "--certify"),
