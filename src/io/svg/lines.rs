@@ -23,7 +23,7 @@ pub(super) const STYLE: &str = "\
 
 /// How the kinds of splitters are called: class and words.
 const KINDS: [(&str, &str); 4] = [
-    ("given", "quadtree, free horizon, or side of a camera's view"),
+    ("given", "quadtree, or end of the domain"),
     ("edge", "edge of a polygon"),
     ("crease", "crease of two planes"),
     ("horizon", "horizon of a surface"),
@@ -120,8 +120,8 @@ pub(super) fn tree(image: &ContourImage, canvas: &Canvas<'_>, out: &mut impl Wri
 /// A row of samples of the lines of [`tree`].
 pub(super) fn legend(at: DVec2, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, r#"<g id="legend">"#)?;
-    for (k, (class, words)) in KINDS.iter().enumerate() {
-        let x = at.x + 235.0 * k as f64;
+    let mut x = at.x;
+    for (class, words) in KINDS {
         writeln!(
             out,
             r#"<path class="{class}" d="M{x},{y} {},{y}"/><text class="legend" x="{}" y="{}">{words}</text>"#,
@@ -130,6 +130,8 @@ pub(super) fn legend(at: DVec2, out: &mut impl Write) -> io::Result<()> {
             at.y + 4.0,
             y = at.y
         )?;
+        // Wide fonts take 7.4 a letter at that size.
+        x += 60.0 + 7.4 * words.len() as f64;
     }
     writeln!(out, "</g>")
 }
