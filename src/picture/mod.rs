@@ -5,9 +5,11 @@
 
 mod coverage;
 mod flat;
+mod parts;
 
 pub use coverage::Coverage;
 pub use flat::flat_picture;
+pub use parts::{PixelPart, PixelParts};
 
 use glam::{DVec3, UVec2};
 
@@ -35,11 +37,14 @@ impl Picture {
     /// # Errors
     /// If a side is 0, or there are more than 2^28 pixels.
     pub fn new(size: UVec2, colour: DVec3) -> Result<Self, SizeError> {
+        let count = Self::check_size(size)?;
+        Ok(Self { size, pixels: vec![colour; count] })
+    }
+
+    /// How many pixels a picture of that size has.
+    pub(crate) fn check_size(size: UVec2) -> Result<usize, SizeError> {
         let count = u64::from(size.x) * u64::from(size.y);
-        if count == 0 || count > MOST_PIXELS {
-            return Err(SizeError { size });
-        }
-        Ok(Self { size, pixels: vec![colour; count as usize] })
+        if count == 0 || count > MOST_PIXELS { Err(SizeError { size }) } else { Ok(count as usize) }
     }
 
     /// Width and height in pixels.
