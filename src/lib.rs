@@ -35,6 +35,7 @@
 //! | [`radiosity`] | diffuse interreflection: progressive refinement, and radiosities of points |
 //! | [`hemicube`] | baselines to compare with: the hemicube, with analytic form factors too, and rays |
 //! | [`picture`] | pictures in pixels, by exact areas |
+//! | [`render`] | pictures of what a camera sees, shaded by contour images, hemicubes or rays |
 //! | [`samples`] | scenes of our own: a Cornell box and a generator |
 //! | [`io`] | reading scenes, writing results |
 //! | `testing` | with the feature of that name: strategies, degenerate scenes and checks for property tests |
@@ -54,6 +55,7 @@ pub mod io;
 mod parallel;
 pub mod picture;
 pub mod radiosity;
+pub mod render;
 pub mod samples;
 pub mod scene;
 #[cfg(feature = "testing")]

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// From the lowest to the highest; each may use those before it.
 ///
 /// The verifiers come before what they verify, so that they cannot share anything with it.
-const LAYERS: [&str; 15] = [
+const LAYERS: [&str; 16] = [
     "exact",
     "scene",
     "verify",
@@ -20,6 +20,7 @@ const LAYERS: [&str; 15] = [
     "radiosity",
     "picture",
     "hemicube",
+    "render",
     "samples",
     "io",
     "testing",

@@ -71,24 +71,11 @@ impl Lighting {
 
 impl Light {
     fn reflected(&self, image: &ContourImage, brdf: &dyn Brdf, place: &Place) -> Result<RgbEstimate, ReflectError> {
-        let (towards, irradiance, location) = match *self {
-            Self::Point { position, intensity } => {
-                // Scaled, so that no square over- or underflows.
-                let offset = position - image.viewpoint().eye();
-                let most = offset.abs().max_element();
-                let scaled = offset / most;
-                (scaled, intensity / most / most / scaled.length_squared(), image.locate_point(position))
-            }
-            Self::Directional { towards, irradiance } => {
-                (towards / towards.abs().max_element(), irradiance, image.locate(towards))
-            }
+        let full = self.unhidden(image.viewpoint().eye(), brdf, place)?;
+        let location = match *self {
+            Self::Point { position, .. } => image.locate_point(position),
+            Self::Directional { towards, .. } => image.locate(towards),
         };
-        let unit = towards.try_normalize().ok_or(ReflectError::BadLight(*self))?;
-        if !(irradiance.is_finite() && irradiance.min_element() >= 0.0) {
-            return Err(ReflectError::BadLight(*self));
-        }
-        let incoming = place.to_local(unit);
-        let full = brdf.eval(incoming, place.outgoing) * irradiance * incoming.z.max(0.0);
         let regions = location.regions();
         let mut shares = regions.iter().map(|&region| self.is_seen_in(image, region));
         let first = shares.next().unwrap_or(false);
@@ -97,6 +84,26 @@ impl Light {
             value: if first { full } else { DVec3::ZERO },
             error: if is_undecided { full } else { DVec3::ZERO },
         })
+    }
+
+    /// What a surface at `eye` reflects of it if nothing is in the way.
+    pub(crate) fn unhidden(&self, eye: DVec3, brdf: &dyn Brdf, place: &Place) -> Result<DVec3, ReflectError> {
+        let (towards, irradiance) = match *self {
+            Self::Point { position, intensity } => {
+                // Scaled, so that no square over- or underflows.
+                let offset = position - eye;
+                let most = offset.abs().max_element();
+                let scaled = offset / most;
+                (scaled, intensity / most / most / scaled.length_squared())
+            }
+            Self::Directional { towards, irradiance } => (towards / towards.abs().max_element(), irradiance),
+        };
+        let unit = towards.try_normalize().ok_or(ReflectError::BadLight(*self))?;
+        if !(irradiance.is_finite() && irradiance.min_element() >= 0.0) {
+            return Err(ReflectError::BadLight(*self));
+        }
+        let incoming = place.to_local(unit);
+        Ok(brdf.eval(incoming, place.outgoing) * irradiance * incoming.z.max(0.0))
     }
 
     /// True if nothing that is seen in a region which its direction is in hides it.

@@ -48,6 +48,7 @@ pub enum ReflectError {
 }
 
 /// A surface that reflects towards a viewer.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     frame: Frame,
     /// Towards the viewer, in the surface's frame.
@@ -56,7 +57,11 @@ pub(crate) struct Place {
 
 impl Place {
     pub(crate) fn new(image: &ContourImage, tangent: Option<DVec3>, view: DVec3) -> Result<Self, ReflectError> {
-        let normal = image.normal().ok_or(ReflectError::NoNormal)?;
+        Self::at(image.normal().ok_or(ReflectError::NoNormal)?, tangent, view)
+    }
+
+    /// By the surface's unit normal.
+    pub(crate) fn at(normal: DVec3, tangent: Option<DVec3>, view: DVec3) -> Result<Self, ReflectError> {
         let frame = Frame::new(normal, tangent).ok_or(ReflectError::BadTangent(tangent.unwrap_or_default()))?;
         let outgoing = (view / view.abs().max_element()).try_normalize().map(|unit| frame.to_local(unit));
         let outgoing = outgoing.filter(|outgoing| outgoing.z > 0.0).ok_or(ReflectError::BadView(view))?;

@@ -36,6 +36,17 @@ impl Face {
         }
     }
 
+    /// The reverse of [`Face::local`].
+    pub(super) fn from_local(self, [u, v, w]: [f64; 3]) -> [f64; 3] {
+        match self {
+            Self::Top => [u, v, w],
+            Self::PlusX => [w, u, v],
+            Self::MinusX => [-w, -u, v],
+            Self::PlusY => [-u, w, v],
+            Self::MinusY => [u, -w, v],
+        }
+    }
+
     /// Its number of rows on a hemicube whose top face has `resolution` of them.
     pub(super) fn rows(self, resolution: usize) -> usize {
         if self == Self::Top { resolution } else { resolution / 2 }
@@ -106,6 +117,7 @@ mod tests {
         for face in Face::ALL {
             let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| DVec3::from(face.local(v)));
             assert_eq!(a.cross(b), c, "{face:?}");
+            assert_eq!(face.from_local(face.local([1.0, 2.0, 3.0])), [1.0, 2.0, 3.0], "{face:?}");
         }
     }
 }

@@ -33,4 +33,4 @@ pub use error::BaselineError;
 pub use face::Face;
 #[cfg(feature = "rays")]
 pub use rays::{Rays, RaysView};
-pub use view::{Hemicube, HemicubeStats, HemicubeView};
+pub use view::{Hemicube, HemicubePixel, HemicubeStats, HemicubeView};

@@ -4,7 +4,7 @@ use super::error::BaselineError;
 use super::face::frame;
 use super::geometry::{inverse_power_of_two, unit_normal};
 use crate::contour::Viewpoint;
-use crate::scene::{PieceRef, PlaneId, PolygonId, Scene};
+use crate::scene::{PieceId, PieceRef, PlaneId, PolygonId, Scene};
 use glam::{DVec2, DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -120,21 +120,41 @@ impl Rays {
         rays: u32,
         seed: u64,
     ) -> Result<RaysView<'_>, BaselineError> {
+        let background = self.hits.len() - 1;
+        let mut hits = std::mem::take(&mut self.hits);
+        hits.fill(0);
+        let result = self.for_each_ray(viewpoint, normal, rays, seed, |_, seen| {
+            hits[seen.map_or(background, |piece| self.scene.piece(piece).polygon().index())] += 1;
+        });
+        self.hits = hits;
+        result?;
+        Ok(RaysView { rays, hits: &self.hits })
+    }
+
+    /// Calls with the unit direction of every ray of [`Rays::view`] and the piece that it meets, `None` for background.
+    ///
+    /// # Errors
+    /// As [`Rays::view`].
+    pub fn for_each_ray(
+        &self,
+        viewpoint: &Viewpoint,
+        normal: DVec3,
+        rays: u32,
+        seed: u64,
+        mut f: impl FnMut(DVec3, Option<PieceId>),
+    ) -> Result<(), BaselineError> {
         let [t, b, n] = frame(normal).ok_or(BaselineError::BadNormal)?;
         let floor = BaselineError::check_viewpoint(viewpoint, &self.scene)?;
         let eye = self.local.of(viewpoint.eye());
         if rays == 0 {
             return Err(BaselineError::NoRays);
         }
-        self.hits.fill(0);
-        let background = self.hits.len() - 1;
         for point in disc(rays, seed) {
             let up = (1.0 - point.length_squared()).max(0.0).sqrt();
             let direction = t * point.x + b * point.y + n * up;
-            let seen = self.start(eye, direction).and_then(|start| self.first_met(start, direction, floor));
-            self.hits[seen.map_or(background, PolygonId::index)] += 1;
+            f(direction, self.start(eye, direction).and_then(|start| self.first_met(start, direction, floor)));
         }
-        Ok(RaysView { rays, hits: &self.hits })
+        Ok(())
     }
 
     /// Where a ray may begin: at the eye, or nearer if that is far away. `None` if it misses the scene.
@@ -151,7 +171,7 @@ impl Rays {
         (way > 0.0 && nearest.length() < radius).then(|| nearest - direction * radius)
     }
 
-    fn first_met(&self, eye: DVec3, direction: DVec3, floor: Option<PlaneId>) -> Option<PolygonId> {
+    fn first_met(&self, eye: DVec3, direction: DVec3, floor: Option<PlaneId>) -> Option<PieceId> {
         let bvh = self.bvh.as_ref()?;
         let ray = Ray::new_inf(eye.as_vec3a(), direction.as_vec3a());
         let mut nearest = (f64::INFINITY, u32::MAX);
@@ -165,7 +185,7 @@ impl Rays {
             }
             f32::INFINITY
         });
-        (nearest.1 != u32::MAX).then(|| self.piece(nearest.1).polygon())
+        (nearest.1 != u32::MAX).then_some(PieceId(nearest.1))
     }
 
     /// The distance along a ray to a piece, if it is met.
@@ -184,7 +204,7 @@ impl Rays {
     }
 
     fn piece(&self, piece: u32) -> PieceRef<'_> {
-        self.scene.piece(crate::scene::PieceId(piece))
+        self.scene.piece(PieceId(piece))
     }
 
     fn plane_of(&self, piece: u32) -> PlaneId {

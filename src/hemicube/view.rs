@@ -72,9 +72,7 @@ impl Hemicube {
     /// # Errors
     /// If the resolution is odd, 0 or larger than [`Self::MAX_RESOLUTION`].
     pub fn new(scene: &Scene, resolution: usize) -> Result<Self, BaselineError> {
-        if resolution == 0 || !resolution.is_multiple_of(2) || resolution > Self::MAX_RESOLUTION {
-            return Err(BaselineError::BadResolution { resolution });
-        }
+        Self::check(resolution)?;
         let geometry = Geometry::new(scene);
         let background = scene.polygon_count() as u32;
         let pieces = geometry.piece_count();
@@ -92,6 +90,12 @@ impl Hemicube {
             pixels: Vec::new(),
             geometry,
         })
+    }
+
+    /// Refuses what is no resolution.
+    pub(crate) fn check(resolution: usize) -> Result<(), BaselineError> {
+        let is_one = resolution != 0 && resolution.is_multiple_of(2) && resolution <= Self::MAX_RESOLUTION;
+        if is_one { Ok(()) } else { Err(BaselineError::BadResolution { resolution }) }
     }
 
     /// The scene.
@@ -117,7 +121,8 @@ impl Hemicube {
         for (row, antiderivative) in rows(&self.items, &self.delta, width) {
             for_runs(row, antiderivative, |piece, factor, _| factors[polygons[piece as usize] as usize] += factor);
         }
-        Ok(HemicubeView { hemicube: self, stats })
+        let frame = frame(normal).ok_or(BaselineError::BadNormal)?;
+        Ok(HemicubeView { hemicube: self, stats, frame })
     }
 
     /// Fills the item buffer.
@@ -181,6 +186,27 @@ fn rows<'a>(items: &'a [u32], delta: &'a DeltaFactors, width: usize) -> impl Ite
 pub struct HemicubeView<'a> {
     hemicube: &'a Hemicube,
     stats: HemicubeStats,
+    frame: [DVec3; 3],
+}
+
+/// A pixel of a hemicube.
+#[derive(Clone, Copy, Debug)]
+pub struct HemicubePixel {
+    /// The piece that is nearest at its centre; `None` for background.
+    pub piece: Option<PieceId>,
+    /// Its form factor.
+    pub factor: f64,
+    /// Its centre in the frame of the hemicube.
+    centre: [f64; 3],
+    frame: [DVec3; 3],
+}
+
+impl HemicubePixel {
+    /// The unit direction to its centre.
+    pub fn direction(&self) -> DVec3 {
+        let [x, y, z] = self.centre;
+        (self.frame[0] * x + self.frame[1] * y + self.frame[2] * z).normalize()
+    }
 }
 
 impl<'a> HemicubeView<'a> {
@@ -221,6 +247,29 @@ impl<'a> HemicubeView<'a> {
         let background = self.hemicube.covered.len() as u32;
         let items = &self.hemicube.items[first..first + face.rows(width) * width];
         items.iter().map(move |&item| (item != background).then_some(PieceId(item)))
+    }
+
+    /// Calls with every pixel, always in the same order; their form factors sum to 1.
+    pub fn for_each_pixel(&self, mut f: impl FnMut(HemicubePixel)) {
+        let Hemicube { items, delta, resolution, covered, .. } = self.hemicube;
+        let width = *resolution;
+        let at = |k: usize| (2 * k + 1) as f64 / width as f64;
+        for (row, antiderivative) in delta.rows() {
+            let (face, v) = if row < width {
+                (Face::Top, at(row) - 1.0)
+            } else {
+                let side = row - width;
+                (Face::ALL[1 + side / (width / 2)], at(side % (width / 2)))
+            };
+            for (column, &item) in items[row * width..][..width].iter().enumerate() {
+                f(HemicubePixel {
+                    piece: (item as usize != covered.len()).then_some(PieceId(item)),
+                    factor: antiderivative[column + 1] - antiderivative[column],
+                    centre: face.from_local([at(column) - 1.0, v, 1.0]),
+                    frame: self.frame,
+                });
+            }
+        }
     }
 
     /// What it took.

@@ -16,7 +16,10 @@ mod contour_json;
 mod digest;
 mod draft;
 mod error;
+#[cfg(feature = "exr")]
+mod exr;
 mod formats;
+mod frames;
 #[cfg(feature = "json")]
 mod geojson;
 #[cfg(feature = "gltf")]
@@ -60,6 +63,9 @@ pub use contour_json::{
     CONTOUR_SCHEMA, CertificateRow, ContourSummary, DomainRow, ObjectRow, PolygonRow, Share, write_contour_json,
 };
 pub use error::{Fault, Faults, Place, ReadError};
+#[cfg(feature = "exr")]
+pub use exr::write_exr;
+pub use frames::{FrameLine, parse_frames, read_frames};
 #[cfg(feature = "json")]
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use merl::{parse_merl, read_merl, write_merl};

@@ -66,6 +66,17 @@ impl Picture {
         self.pixels[y as usize * self.size.x as usize + x as usize]
     }
 
+    /// The same picture with all colours times a factor.
+    #[must_use]
+    pub fn times(&self, factor: f64) -> Self {
+        Self { size: self.size, pixels: self.pixels.iter().map(|&colour| colour * factor).collect() }
+    }
+
+    /// Makes a pixel that colour.
+    pub(crate) fn set(&mut self, x: u32, y: u32, colour: DVec3) {
+        self.pixels[y as usize * self.size.x as usize + x as usize] = colour;
+    }
+
     /// Adds a colour times the area that each pixel has in a region.
     pub(crate) fn add(&mut self, coverage: &Coverage, colour: DVec3) {
         let width = self.size.x as usize;

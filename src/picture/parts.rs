@@ -126,6 +126,11 @@ impl<'a> PixelParts<'a> {
         self.starts.push(self.corners.len());
     }
 
+    /// The image that is cut.
+    pub fn image(&self) -> &'a ContourImage {
+        self.image
+    }
+
     /// The size of the picture.
     pub fn size(&self) -> UVec2 {
         self.size

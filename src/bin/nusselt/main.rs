@@ -9,6 +9,7 @@ mod failure;
 mod form_factors;
 mod info;
 mod input;
+mod lighting;
 mod output;
 mod place;
 mod point_factors;
@@ -16,6 +17,7 @@ mod progress;
 mod proof;
 mod radiosity;
 mod reflect;
+mod render;
 mod repairs;
 mod scene;
 mod shadows;
@@ -45,6 +47,7 @@ enum Command {
     #[command(name = "form-factors")]
     FormFactors(form_factors::FormFactors),
     Radiosity(radiosity::Radiosity),
+    Render(render::Render),
     Draw(draw::Draw),
     Shadows(shadows::ShadowsOf),
     Reflect(reflect::Reflect),
@@ -61,6 +64,7 @@ impl Command {
             Self::PointFactors(command) => command.run(common),
             Self::FormFactors(command) => command.run(common),
             Self::Radiosity(command) => command.run(common),
+            Self::Render(command) => command.run(common),
             Self::Draw(command) => command.run(common),
             Self::Shadows(command) => command.run(common),
             Self::Reflect(command) => command.run(common),

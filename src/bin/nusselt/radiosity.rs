@@ -74,12 +74,12 @@ pub(crate) struct Radiosity {
     loading: Loading,
 }
 
-fn parse_size(text: &str) -> Result<f64, String> {
+pub(crate) fn parse_size(text: &str) -> Result<f64, String> {
     let size = text.trim().parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
     size.ok_or_else(|| "it takes a number above 0".to_owned())
 }
 
-fn parse_fraction(text: &str) -> Result<f64, String> {
+pub(crate) fn parse_fraction(text: &str) -> Result<f64, String> {
     let fraction = text.trim().parse().ok().filter(|x: &f64| (1e-13..=1.0).contains(x));
     fraction.ok_or_else(|| "it takes a part of what is emitted, from 1e-13 to 1".to_owned())
 }

@@ -73,7 +73,7 @@ fn all<R: Read>(mut reader: PointReader<R>) -> Result<Vec<PointLine>, ReadError>
 }
 
 /// The fields of a line: a comma ends one, and so do blanks.
-fn fields(text: &str) -> Vec<&str> {
+pub(super) fn fields(text: &str) -> Vec<&str> {
     let mut fields = Vec::new();
     for part in text.split(',') {
         let before = fields.len();
@@ -86,7 +86,7 @@ fn fields(text: &str) -> Vec<&str> {
 }
 
 /// True for a first line in which nothing is a number.
-fn is_header(fields: &[&str]) -> bool {
+pub(super) fn is_header(fields: &[&str]) -> bool {
     fields.iter().all(|field| field.parse::<f64>().is_err())
 }
 

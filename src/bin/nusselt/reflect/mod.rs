@@ -1,18 +1,17 @@
 //! `nusselt reflect`: the radiance that a surface reflects towards a viewer.
 
-mod lighting;
 mod report;
 
 use crate::args::{Common, Loading, Order, Way, parse_direction, parse_number, parse_point, parse_surface};
 use crate::brdf::{BrdfSpec, GRAMMAR};
 use crate::failure::Failure;
 use crate::input::{build_order, check_way, load, way};
+use crate::lighting::Lights;
 use crate::output::{print, print_json, write_file};
 use crate::place::{hemisphere, on_polygon};
 use crate::summary::Timing;
 use glam::DVec3;
-use lighting::{SkySpec, parse_directional_light, parse_point_light};
-use nusselt::brdf::{Brdf, Light, Lighting, ReflectError};
+use nusselt::brdf::{Brdf, Light, ReflectError};
 use nusselt::contour::{ContourImage, Domain};
 use nusselt::integral::CubatureOptions;
 use nusselt::io::{BrdfPicture, write_brdf_svg};
@@ -60,19 +59,8 @@ pub(crate) struct Reflect {
     /// The surface's x direction, for models that are not the same all around [default: any, but always the same]
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true)]
     tangent: Option<DVec3>,
-    /// The sky, seen where nothing else is: constant:L, overcast:L (CIE, L at the zenith) or clear:L:X,Y,Z (CIE, with the sun
-    /// towards X,Y,Z; the sun itself is a --directional-light). L is a radiance, one number or R,G,B [default: black]
-    #[arg(long, value_name = "SKY", value_parser = SkySpec::parse)]
-    sky: Option<SkySpec>,
-    /// Towards the zenith of an overcast or clear sky [default: 0,0,1]
-    #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true, requires = "sky")]
-    sky_up: Option<DVec3>,
-    /// A light at a point, of radiant intensity I, one number or R,G,B. May be repeated
-    #[arg(long, value_name = "X,Y,Z:I", value_parser = parse_point_light, allow_hyphen_values = true)]
-    point_light: Vec<Light>,
-    /// A light towards X,Y,Z, infinitely far away, that lights a surface which faces it by the irradiance E. May be repeated
-    #[arg(long, value_name = "X,Y,Z:E", value_parser = parse_directional_light, allow_hyphen_values = true)]
-    directional_light: Vec<Light>,
+    #[command(flatten)]
+    lights: Lights,
     /// Polygons emit from their backs too
     #[arg(long)]
     two_sided: bool,
@@ -115,7 +103,7 @@ fn parse_picture(text: &str) -> Result<BrdfPicture, String> {
 impl Reflect {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         check_way(self.way, &self.order)?;
-        let lighting = self.lighting()?;
+        let lighting = self.lights.lighting(self.two_sided)?;
         let outputs = self.output.iter().map(PathBuf::as_path);
         let (scene, load_s) = load(&self.scene, outputs, &self.loading, common)?;
         let (viewpoint, domain) = match (self.on, self.normal) {
@@ -149,16 +137,6 @@ impl Reflect {
             return print_json(&report);
         }
         if common.quiet { Ok(()) } else { print(&report.in_words(&image, self.output.as_deref())) }
-    }
-
-    fn lighting(&self) -> Result<Lighting, Failure> {
-        let up = self.sky_up.unwrap_or(DVec3::Z);
-        let sky = self.sky.map(|sky| sky.sky(up)).transpose();
-        Ok(Lighting {
-            is_two_sided: self.two_sided,
-            sky: sky.map_err(|error| Failure::Usage(format!("--sky: {error}")))?,
-            lights: self.point_light.iter().chain(&self.directional_light).copied().collect(),
-        })
     }
 
     fn draw(&self, image: &ContourImage, brdf: &dyn Brdf) -> Result<(), Failure> {

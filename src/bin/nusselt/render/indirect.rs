@@ -1,0 +1,102 @@
+//! Interreflection, solved before pictures are taken.
+
+use crate::args::Common;
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::radiosity::{parse_fraction, parse_size};
+use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, mesh_scene};
+use nusselt::radiosity::{RadiosityError, Solver, SolverOptions, SurfaceOptions};
+use nusselt::render::{Indirect, RenderError, Shader};
+use std::fmt::Display;
+use std::path::Path;
+use std::time::Instant;
+
+/// How interreflection is found.
+#[derive(clap::Args)]
+pub(super) struct Interreflection {
+    /// Show light straight from lamps, sky and lights alone; without it surfaces light each other too, by the radiosity of what polygons
+    /// emit
+    #[arg(long, conflicts_with_all = ["gather", "patch", "until", "tolerance", "detail", "depth"])]
+    direct: bool,
+    /// Gather interreflected light at every point from all patches that it sees, instead of interpolating it between
+    /// corners of a mesh; slower. Hemicubes and rays always do
+    #[arg(long)]
+    gather: bool,
+    /// Mesh polygons into patches with edges of at most this length, in scene units [default: a 24th of the scene's diagonal]
+    #[arg(long, value_name = "SIZE", value_parser = parse_size, allow_hyphen_values = true)]
+    patch: Option<f64>,
+    /// Stop when so much of the emitted power is left to be sent
+    #[arg(long, value_name = "FRACTION", default_value = "0.01", value_parser = parse_fraction, allow_hyphen_values = true)]
+    until: f64,
+    /// Compute each form factor to this absolute error
+    #[arg(long, value_name = "T", default_value = "1e-3", value_parser = parse_size, allow_hyphen_values = true)]
+    tolerance: f64,
+    /// Halve edges of patches where the interreflected light in their middle differs by more than this part from what their ends say
+    #[arg(long, value_name = "PART", default_value = "0.03", value_parser = parse_size, allow_hyphen_values = true)]
+    detail: f64,
+    /// How often at most an edge of a patch is halved
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u32).range(0..=8))]
+    depth: u32,
+}
+
+/// What it took; zeros if there is none.
+#[derive(Default)]
+pub(super) struct Solved {
+    pub(super) patches: usize,
+    pub(super) shots: usize,
+    pub(super) corners: usize,
+    pub(super) solve_s: f64,
+    pub(super) surface_s: f64,
+}
+
+/// Edges of patches are at most this part of the scene's diagonal.
+const PART: f64 = 1.0 / 24.0;
+
+impl Interreflection {
+    /// Adds it to a shader, if it is wanted and something emits.
+    pub(super) fn add_to(&self, shader: Shader, file: &Path, common: &Common) -> Result<(Shader, Solved), Failure> {
+        if self.direct {
+            return Ok((shader, Solved::default()));
+        }
+        let failed = |error: &dyn Display| Failure::about(file, &error);
+        let scene = shader.scene().clone();
+        let start = Instant::now();
+        let longest = self.patch.unwrap_or(scene.diagonal() * PART);
+        if scene.piece_count() == 0 || longest <= 0.0 {
+            return Ok((shader, Solved::default()));
+        }
+        let (patches, of) = mesh_scene(&scene, longest).map_err(|error| failed(&error))?;
+        let options = ExchangeOptions { tolerance: self.tolerance, ..ExchangeOptions::default() };
+        let exchange = Exchange::new(&patches, PatchPlan::Polygons, options).map_err(|error| failed(&error))?;
+        let mut solver = match Solver::new(&patches, &exchange, SolverOptions::default()) {
+            Err(RadiosityError::Dark) => return Ok((shader, Solved::default())),
+            solver => solver.map_err(|error| failed(&error))?,
+        };
+        let mut progress = Progress::new("shots", None, common.quiet);
+        let mut shots = 0;
+        let result = solver.solve(self.until, |solver| {
+            progress.add(solver.state().shots - shots);
+            shots = solver.state().shots;
+            progress.note(format!("{:.2e} unshot", solver.balance().unshot_fraction()));
+            true
+        });
+        drop(progress);
+        result.map_err(|error| failed(&error))?;
+        let solve_s = start.elapsed().as_secs_f64();
+        let start = Instant::now();
+        let mut indirect = Indirect::new(&patches, &of, scene.polygon_count(), solver.emission(), solver.radiosity());
+        if !self.gather {
+            let options = SurfaceOptions { detail: self.detail, depth: self.depth, ..SurfaceOptions::default() };
+            indirect = indirect.interpolated(&options).map_err(|error| failed(&error))?;
+        }
+        let solved = Solved {
+            patches: patches.polygon_count(),
+            shots: solver.state().shots,
+            corners: indirect.corner_count(),
+            solve_s,
+            surface_s: start.elapsed().as_secs_f64(),
+        };
+        let shader = shader.with_indirect(indirect).map_err(|error: RenderError| failed(&error))?;
+        Ok((shader, solved))
+    }
+}

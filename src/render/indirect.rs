@@ -1,0 +1,144 @@
+//! Interreflected light, from a solution of the radiosity.
+
+use super::RenderError;
+use super::patch_index::{PatchIndex, off};
+use crate::contour::SceneOrder;
+use crate::radiosity::{Gather, RadiosityError, Surface, SurfaceOptions};
+use crate::scene::{PolygonId, Scene, Side};
+use glam::DVec3;
+use std::f64::consts::PI;
+
+/// The patches of a scene with their radiosities, and, if that is asked for, the irradiance that surfaces have of what is reflected.
+///
+/// Backs send no light, as in [`Solver`](crate::radiosity::Solver).
+#[derive(Clone, Debug)]
+pub struct Indirect {
+    pub(super) patches: Scene,
+    pub(super) order: SceneOrder,
+    of: Vec<PolygonId>,
+    emission: Vec<DVec3>,
+    radiosity: Vec<DVec3>,
+    index: PatchIndex,
+    surface: Option<Irradiance>,
+}
+
+/// The irradiance of fronts at corners of triangles.
+#[derive(Clone, Debug)]
+struct Irradiance {
+    surface: Surface,
+    /// Where the triangles of each patch begin, and where the last ones end.
+    starts: Vec<usize>,
+}
+
+impl Indirect {
+    /// Of patches of a scene with so many polygons, patch k being part of polygon `of[k]`, with the radiosity that each emits and the one that it has in all, as
+    /// [`Solver`](crate::radiosity::Solver) gives them. What a point receives is gathered from all patches that it sees, exactly, at the cost of a view of all of
+    /// the scene for each point: see [`Indirect::interpolated`].
+    ///
+    /// # Panics
+    /// If there are not as many of each as patches, or `of` names a polygon that there is not.
+    pub fn new(patches: &Scene, of: &[PolygonId], polygons: usize, emission: &[DVec3], radiosity: &[DVec3]) -> Self {
+        let count = patches.polygon_count();
+        assert!([of.len(), emission.len(), radiosity.len()].iter().all(|&len| len == count), "one for every patch");
+        assert!(of.iter().all(|polygon| polygon.index() < polygons), "patches of polygons that there are");
+        Self {
+            patches: patches.clone(),
+            order: SceneOrder::new(patches),
+            of: of.to_vec(),
+            emission: emission.to_vec(),
+            radiosity: radiosity.to_vec(),
+            index: PatchIndex::new(patches, of, polygons),
+            surface: None,
+        }
+    }
+
+    /// Gathers the irradiance of what patches reflect, without what they emit, at the corners of a mesh that is finer where it changes ([`Surface`]), by all threads. Between them it is
+    /// interpolated linearly for matt fronts; light straight from lamps is not part of it.
+    ///
+    /// # Errors
+    /// As [`Surface::new`].
+    pub fn interpolated(mut self, options: &SurfaceOptions) -> Result<Self, RadiosityError> {
+        let count = self.patches.polygon_count();
+        let reflected: Vec<DVec3> = self.radiosity.iter().zip(&self.emission).map(|(&b, &e)| b - e).collect();
+        let nothing = vec![DVec3::ZERO; count];
+        let matt = |patch: usize| self.patches.polygon(PolygonId(patch as u32)).material().diffuse != [0.0; 3];
+        let receives: Vec<DVec3> = (0..count).map(|k| if matt(k) { DVec3::ONE } else { DVec3::ZERO }).collect();
+        let gather = Gather::new(self.order.clone(), &nothing, &receives, &reflected);
+        let surface = Surface::new(&self.patches, &self.of, &gather, options)?;
+        let starts = (0..=count).map(|k| surface.patches.partition_point(|patch| patch.index() < k)).collect();
+        self.surface = Some(Irradiance { surface, starts });
+        Ok(self)
+    }
+
+    /// How many corners the irradiance was gathered at; 0 if it is gathered for each point.
+    pub fn corner_count(&self) -> usize {
+        self.surface.as_ref().map_or(0, |irradiance| irradiance.surface.positions.len())
+    }
+
+    pub(super) fn check(&self, scene: &Scene) -> Result<(), RenderError> {
+        let found = self.of.iter().map(|polygon| polygon.index() + 1).max().unwrap_or(0);
+        let expected = scene.polygon_count();
+        if found > expected { Err(RenderError::OtherPatches { found, expected }) } else { Ok(()) }
+    }
+
+    /// The radiance that a side of a patch sends.
+    pub(super) fn radiance(&self, patch: PolygonId, side: Option<Side>) -> DVec3 {
+        if side == Some(Side::Front) { self.radiosity[patch.index()] / PI } else { DVec3::ZERO }
+    }
+
+    /// The patch that a point of a polygon is on.
+    pub(super) fn patch_at(&self, polygon: PolygonId, point: DVec3) -> Option<PolygonId> {
+        self.index.patch_at(&self.patches, polygon, point)
+    }
+
+    /// The interpolated irradiance of a front; `None` if there is none, or if the material was matt and black when it was gathered.
+    pub(super) fn irradiance(&self, patch: PolygonId, side: Side, point: DVec3) -> Option<DVec3> {
+        let Irradiance { surface, starts } = self.surface.as_ref().filter(|_| side == Side::Front)?;
+        if self.patches.polygon(patch).material().diffuse == [0.0; 3] {
+            return None;
+        }
+        let triangles = &surface.triangles[starts[patch.index()]..starts[patch.index() + 1]];
+        let corners = |triangle: &[u32; 3]| triangle.map(|corner| surface.positions[corner as usize]);
+        let mut nearest = (f64::INFINITY, None);
+        for triangle in triangles {
+            let distance = off(&corners(triangle), point);
+            if distance < nearest.0 {
+                nearest = (distance, Some(triangle));
+                if distance < 0.0 {
+                    break;
+                }
+            }
+        }
+        let triangle = nearest.1?;
+        let shares = barycentric(corners(triangle), point);
+        let values = triangle.map(|corner| surface.radiosity[corner as usize]);
+        Some(values[0] * shares[0] + values[1] * shares[1] + values[2] * shares[2])
+    }
+}
+
+/// The shares that the corners of a triangle have in a point, which is moved into it.
+fn barycentric([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
+    let normal = (b - a).cross(c - a);
+    let whole = normal.length_squared();
+    let share = |from: DVec3, to: DVec3| (normal.dot((to - from).cross(point - from)) / whole).clamp(0.0, 1.0);
+    let shares = [share(b, c), share(c, a), share(a, b)];
+    let sum: f64 = shares.iter().sum();
+    if sum > 0.0 { shares.map(|share| share / sum) } else { [1.0 / 3.0; 3] }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_give_the_point_back() {
+        let corners = [DVec3::new(1.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.0), DVec3::new(0.0, 0.0, 3.0)];
+        let point = corners[0] * 0.2 + corners[1] * 0.5 + corners[2] * 0.3;
+        let shares = barycentric(corners, point);
+        for (found, expected) in shares.into_iter().zip([0.2, 0.5, 0.3]) {
+            assert!((found - expected).abs() < 1e-15, "{shares:?}");
+        }
+        // From outside the nearest side.
+        assert_eq!(barycentric(corners, corners[0] * 3.0 - corners[1] * 2.0)[1], 0.0);
+    }
+}
