@@ -102,13 +102,15 @@ impl Windows {
         if panes.is_empty() { Err(WindowError::NoArea) } else { Ok(Self { panes, horizon: None }) }
     }
 
-    /// A narrow window about a direction, as seen from an eye: a triangle at that distance, of which the direction passes through the middle.
-    pub(crate) fn about(eye: DVec3, direction: DVec3, distance: f64) -> Self {
+    /// A narrow window about a unit direction, as seen from an eye: a triangle at that distance, of which the direction passes through the middle. `None` if that is
+    /// beyond all numbers.
+    pub(crate) fn about(eye: DVec3, direction: DVec3, distance: f64) -> Option<Self> {
         let (u, v) = direction.any_orthonormal_pair();
         let middle = eye + direction * distance;
         let corners =
             [[1.0, 0.0], [-0.5, 0.9], [-0.5, -0.9]].map(|[x, y]| middle + (u * x + v * y) * (1e-4 * distance));
-        Self { panes: Arc::new([Pane::Ring(corners.into())]), horizon: None }
+        let is_finite = corners.iter().all(|corner| corner.is_finite());
+        is_finite.then(|| Self { panes: Arc::new([Pane::Ring(corners.into())]), horizon: None })
     }
 
     /// These and the others; the horizon is that of these.

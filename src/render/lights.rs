@@ -54,8 +54,9 @@ impl Shader {
     ) -> Result<Option<Spot>, RenderError> {
         // So far away that rounding its corners turns the window by much less than its width.
         let distance = self.order.scene().diagonal().max(place.eye().abs().max_element());
-        let window = Windows::about(place.eye(), direction, distance).above_surface();
-        let image = self.order.view_in(space, &place.viewpoint, &Domain::Window(window), &ViewOptions::default());
+        let Some(window) = Windows::about(place.eye(), direction, distance) else { return Ok(None) };
+        let domain = Domain::Window(window.above_surface());
+        let image = self.order.view_in(space, &place.viewpoint, &domain, &ViewOptions::default());
         let image = image.map_err(|source| place.view_error(source))?;
         let seen = image.locate(direction).regions().into_iter().find_map(|region| match region {
             Region::Cell(id) => Some(image.cell(id)),

@@ -112,13 +112,15 @@ fn shade(
     let (mut sum, mut reflected, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for (k, part) in of_pixel.iter().enumerate() {
         let cell = parts.image().cell(part.cell);
-        let spot = cell.piece().zip(part.side).zip(cell.point_at(part.direction));
-        let Some(((piece, side), near)) = spot else {
+        let Some((piece, side)) = cell.piece().zip(part.side) else {
             sum += shader.background(part.direction) * part.area;
             continue;
         };
+        // Of a plane that is seen edge-on: the nearest point of the piece will do.
+        let near = cell.point_at(part.direction).unwrap_or(cell.image().viewpoint().eye());
         let spot = Spot { piece, side, near };
-        let from_light = shader.reflected(&spot, -part.direction, number.wrapping_mul(64).wrapping_add(k as u64))?;
+        let seed = number.wrapping_mul(64).wrapping_add(k as u64);
+        let from_light = shader.reflected_where_seen(&spot, -part.direction, seed)?;
         sum += (shader.emitted(&spot) + from_light) * part.area;
         reflected += from_light * part.area;
         area += part.area;

@@ -191,6 +191,15 @@ impl Shader {
     /// # Panics
     /// If there is no such piece.
     pub fn reflected(&self, spot: &Spot, viewer: DVec3, seed: u64) -> Result<DVec3, RenderError> {
+        let place = Place::new(self, *spot, viewer)?;
+        if place.height < -1e-9 {
+            return Err(place.reflect_error(ReflectError::BadView(viewer)));
+        }
+        self.reflected_where_seen(spot, viewer, seed)
+    }
+
+    /// The same where the surface is known to be seen: that the viewer is below it is rounding.
+    pub(super) fn reflected_where_seen(&self, spot: &Spot, viewer: DVec3, seed: u64) -> Result<DVec3, RenderError> {
         // A desk is only ever taken or put back whole.
         let free = || self.desks.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = free().pop();
@@ -256,6 +265,8 @@ pub(super) struct Place<'a> {
     pub(super) polygon: PolygonId,
     pub(super) viewpoint: Viewpoint,
     pub(super) normal: DVec3,
+    /// The sine of the angle at which the viewer is above the surface.
+    height: f64,
     pub(super) brdf: &'a dyn Brdf,
     pub(super) towards: brdf::Place,
 }
@@ -272,12 +283,9 @@ impl<'a> Place<'a> {
         let height = normal.dot(unit);
         // Who sees the surface edge-on may be below it by rounding.
         let raised = if height > GRAZING { unit } else { unit + normal * (GRAZING - height) };
-        if height < -1e-9 {
-            return Err(failed(ReflectError::BadView(viewer)));
-        }
         let towards = brdf::Place::at(normal, None, raised).map_err(failed)?;
         let brdf = &*shader.brdfs[scene.polygon(polygon).material_id().index()];
-        Ok(Self { spot, polygon, viewpoint, normal, brdf, towards })
+        Ok(Self { spot, polygon, viewpoint, normal, height, brdf, towards })
     }
 
     pub(super) fn eye(&self) -> DVec3 {

@@ -22,14 +22,14 @@ pub(super) struct Interreflection {
     /// corners of a mesh; slower. Hemicubes and rays always do
     #[arg(long)]
     gather: bool,
-    /// Mesh polygons into patches with edges of at most this length, in scene units [default: a 24th of the scene's diagonal]
+    /// Mesh polygons into patches with edges of at most this length, in scene units [default: a 12th of the scene's diagonal]
     #[arg(long, value_name = "SIZE", value_parser = parse_size, allow_hyphen_values = true)]
     patch: Option<f64>,
     /// Stop when so much of the emitted power is left to be sent
     #[arg(long, value_name = "FRACTION", default_value = "0.01", value_parser = parse_fraction, allow_hyphen_values = true)]
     until: f64,
     /// Compute each form factor to this absolute error
-    #[arg(long, value_name = "T", default_value = "1e-3", value_parser = parse_size, allow_hyphen_values = true)]
+    #[arg(long, value_name = "T", default_value = "5e-3", value_parser = parse_size, allow_hyphen_values = true)]
     tolerance: f64,
     /// Halve edges of patches where the interreflected light in their middle differs by more than this part from what their ends say
     #[arg(long, value_name = "PART", default_value = "0.03", value_parser = parse_size, allow_hyphen_values = true)]
@@ -50,7 +50,7 @@ pub(super) struct Solved {
 }
 
 /// Edges of patches are at most this part of the scene's diagonal.
-const PART: f64 = 1.0 / 24.0;
+const PART: f64 = 1.0 / 12.0;
 
 impl Interreflection {
     /// Adds it to a shader, if it is wanted and something emits.

@@ -1,0 +1,383 @@
+//! Pictures: direct light against a closed form, furnaces, mirrors, shadows, and all ways of shading against each other.
+
+use glam::{DVec2, DVec3, UVec2};
+use nusselt::brdf::{Brdf, Fresnel, Lambert, Light, Lighting, Mirror, Phong, Sky, Sum};
+use nusselt::contour::{Domain, Frustum, SceneOrder, Viewpoint};
+use nusselt::factors::mesh_scene;
+use nusselt::picture::PixelParts;
+use nusselt::radiosity::SurfaceOptions;
+use nusselt::render::{Indirect, RenderError, Rendered, Shader, ShaderOptions, Shading, Spot, render};
+use nusselt::samples::{Kind, generate};
+use nusselt::scene::{Material, PieceId, PolygonId, Scene, Side};
+use std::f64::consts::PI;
+
+fn material(name: &str, diffuse: f64, emission: f64) -> Material {
+    Material { diffuse: [diffuse; 3], emission: [emission; 3], ..Material::new(name) }
+}
+
+fn shader(scene: &Scene, shading: Shading) -> Shader {
+    let options = ShaderOptions { shading, ..ShaderOptions::default() };
+    Shader::new(SceneOrder::new(scene), Lighting::default(), options).expect("a shader")
+}
+
+fn square(low: [f64; 2], high: [f64; 2], z: f64) -> [[f64; 3]; 4] {
+    [[low[0], low[1], z], [high[0], low[1], z], [high[0], high[1], z], [low[0], high[1], z]]
+}
+
+/// A floor at z = 0, a lamp at z = 3 above it that shines down, and a plate at z = 1.5 that covers x > 0.
+const RHO: f64 = 0.7;
+const GLOW: f64 = 5.0;
+fn half_hidden() -> Scene {
+    let up = vec![vec![0, 1, 2, 3]];
+    let down = vec![vec![3, 2, 1, 0]];
+    Scene::builder()
+        .mesh(&square([-4.0, -4.0], [4.0, 4.0], 0.0), &up, material("floor", RHO, 0.0))
+        .mesh(&square([-1.0, -1.0], [1.0, 1.0], 3.0), &down, material("lamp", 0.0, GLOW))
+        .mesh(&square([0.0, -9.0], [9.0, 9.0], 1.5), &up, material("plate", 0.0, 0.0))
+        .build()
+        .expect("a scene")
+}
+
+/// The form factor from a point of the floor to a parallel rectangle above it: the antiderivative at its corners.
+fn rectangle(from: DVec2, low: DVec2, high: DVec2, height: f64) -> f64 {
+    let at = |x: f64, y: f64| {
+        let (a, b) = (x / height, y / height);
+        let (p, q) = ((1.0 + a * a).sqrt(), (1.0 + b * b).sqrt());
+        (a / p * (b / p).atan() + b / q * (a / q).atan()) / (2.0 * PI)
+    };
+    let (low, high) = (low - from, high - from);
+    at(high.x, high.y) - at(low.x, high.y) - at(high.x, low.y) + at(low.x, low.y)
+}
+
+/// The radiance of the floor there, in the half shadow of the plate.
+fn expected(at: DVec2) -> f64 {
+    // The plate is half-way: what is seen of the lamp is at x < -at.x.
+    let right = (-at.x).clamp(-1.0, 1.0);
+    RHO * GLOW * rectangle(at, DVec2::splat(-1.0), DVec2::new(right, 1.0), 3.0)
+}
+
+fn floor_spot(x: f64, y: f64) -> Spot {
+    Spot { piece: PieceId(0), side: Side::Front, near: DVec3::new(x, y, 0.0) }
+}
+
+#[test]
+fn direct_light_is_the_exact_form_factor_of_what_is_seen_of_a_lamp() {
+    let scene = half_hidden();
+    let shader = shader(&scene, Shading::Contour);
+    let mut in_half_shadow = 0;
+    for k in 0..2000 {
+        let (x, y) = (-2.0 + 4.0 * f64::from(k) / 1999.0, (f64::from(k) * 0.37).sin() * 1.5);
+        let found = shader.reflected(&floor_spot(x, y), DVec3::new(-1.0, 0.3, 2.0), 0).expect("shaded");
+        let expected = expected(DVec2::new(x, y));
+        // Form factors are right to some 1e-15.
+        assert!((found - DVec3::splat(expected)).abs().max_element() < 1e-13, "{x} {y}: {found} {expected}");
+        in_half_shadow += usize::from(x.abs() < 1.0);
+    }
+    assert!(in_half_shadow > 900);
+}
+
+#[test]
+fn pixels_are_the_radiances_of_what_is_in_them() {
+    let scene = half_hidden();
+    let shader = shader(&scene, Shading::Contour);
+    let eye = DVec3::new(-3.5, 0.5, 1.0);
+    let camera = Frustum::new(DVec3::new(2.0, 0.0, -1.0), DVec3::Z, 60.0, 1.5).expect("a camera");
+    let size = UVec2::new(48, 32);
+    let rendered = render(&shader, eye, &camera, size, &|_| ()).expect("a picture");
+    let image = shader.order().view(&Viewpoint::free(eye), &Domain::Frustum(camera)).expect("a view");
+    let parts = PixelParts::new(&image, size).expect("a size").expect("a camera");
+    let mut floor = 0;
+    parts.tile(UVec2::ZERO, size, |x, y, parts| {
+        let sum: DVec3 = parts
+            .iter()
+            .map(|part| {
+                let radiance = match part.polygon {
+                    Some(PolygonId(0)) => {
+                        floor += 1;
+                        let at = eye + part.direction * (-eye.z / part.direction.z);
+                        expected(at.truncate())
+                    }
+                    // The lamp's front is seen.
+                    Some(PolygonId(1)) => GLOW,
+                    _ => 0.0,
+                };
+                DVec3::splat(radiance * part.area)
+            })
+            .sum();
+        assert!((rendered.picture.pixel(x, y) - sum).abs().max_element() < 1e-12, "{x} {y}");
+    });
+    assert!(floor > 600 && rendered.points > floor, "{floor} {}", rendered.points);
+    // 95% of what reflects comes to 0.8 at most.
+    let exposure = rendered.auto_exposure();
+    let brighter = rendered.picture.pixels().iter().filter(|pixel| pixel.x * exposure > 0.8 && pixel.x < GLOW).count();
+    assert!(exposure > 1.0 && brighter * 20 < 48 * 32 + 20 * 32, "{exposure} {brighter}");
+}
+
+/// A box with its fronts inside.
+fn hollow(material: Material) -> Scene {
+    let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { 0.0 } else { [2.0, 3.0, 1.5][axis] });
+    let vertices: Vec<[f64; 3]> = (0..8).map(corner).collect();
+    let faces = [[0, 1, 3, 2], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3], [4, 6, 7, 5]];
+    Scene::builder().mesh(&vertices, &faces.map(|face| face.to_vec()), material).build().expect("a scene")
+}
+
+/// Its radiosities, known without solving anything.
+fn furnace(patch: f64, rho: f64, emission: f64) -> (Scene, Indirect) {
+    let scene = hollow(material("even", rho, emission));
+    let (patches, of) = mesh_scene(&scene, patch).expect("a mesh");
+    let all = |radiosity: f64| vec![DVec3::splat(radiosity); patches.polygon_count()];
+    let (emitted, total) = (all(PI * emission), all(PI * emission / (1.0 - rho)));
+    let indirect = Indirect::new(&patches, &of, scene.polygon_count(), &emitted, &total);
+    (scene, indirect)
+}
+
+#[test]
+fn a_furnace_looks_even_however_it_is_shaded() {
+    let (rho, emission) = (0.6, 2.0);
+    let (scene, gathering) = furnace(0.7, rho, emission);
+    let interpolating = gathering.clone().interpolated(&SurfaceOptions::default()).expect("a surface");
+    assert!(interpolating.corner_count() > 0 && gathering.corner_count() == 0);
+    let camera = Frustum::new(DVec3::new(1.0, 1.5, -0.4), DVec3::Z, 80.0, 1.0).expect("a camera");
+    let ways = [
+        (Shading::Contour, &gathering, 1e-12),
+        // What is a thousandth of the way inside of the corners sees all of the box, too.
+        (Shading::Contour, &interpolating, 1e-12),
+        (Shading::Hemicube { resolution: 32 }, &gathering, 1e-12),
+        // Every ray meets a wall.
+        (Shading::Rays { rays: 50 }, &gathering, 1e-12),
+    ];
+    for (shading, indirect, tolerance) in ways {
+        let shader = shader(&scene, shading).with_indirect(indirect.clone()).expect("its patches");
+        let rendered =
+            render(&shader, DVec3::new(0.3, 0.4, 1.1), &camera, UVec2::new(12, 12), &|_| ()).expect("a picture");
+        for pixel in rendered.picture.pixels() {
+            let off = (*pixel - emission / (1.0 - rho)).abs().max_element();
+            assert!(off < tolerance, "{shading:?}: {pixel}");
+        }
+    }
+}
+
+#[test]
+fn hemicubes_and_rays_come_near_contours_and_only_those_are_even() {
+    let scene = half_hidden();
+    let field = |shading| {
+        let shader = shader(&scene, shading);
+        let at = |k: i32| shader.reflected(&floor_spot(-2.0 + 0.02 * f64::from(k), 0.1), DVec3::Z, k as u64);
+        (0..200).map(|k| at(k).expect("shaded").x).collect::<Vec<f64>>()
+    };
+    // How much a value differs from the mean of its neighbours.
+    let bumps = |field: &[f64]| field.windows(3).map(|w| (w[1] - 0.5 * (w[0] + w[2])).abs()).fold(0.0, f64::max);
+    let exact = field(Shading::Contour);
+    let cubes = field(Shading::Hemicube { resolution: 64 });
+    let off = exact.iter().zip(&cubes).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    // A lamp of form factor 0.13 covers some 30 by 30 pixels of the top face: a row more or less is a thirtieth of it.
+    assert!(off < 0.1 * RHO * GLOW * 0.13 && off > 1e-4, "{off}");
+    assert!(bumps(&cubes) > 20.0 * bumps(&exact), "{} {}", bumps(&cubes), bumps(&exact));
+    // Each within five standard errors of the exact form factor, as many independent rays have.
+    let count = 4096;
+    let rays = field(Shading::Rays { rays: count });
+    for (exact, found) in exact.iter().zip(&rays) {
+        let factor = exact / (RHO * GLOW);
+        let error = RHO * GLOW * (factor * (1.0 - factor) / f64::from(count)).sqrt();
+        assert!((exact - found).abs() <= 5.0 * error + 1e-12, "{exact} {found} {error}");
+    }
+}
+
+#[test]
+fn gloss_and_interreflection_agree_with_rays_within_their_noise() {
+    let scene = generate(Kind::Room, 300, 2).expect("a room").to_builder().build().expect("a scene");
+    let (patches, of) = mesh_scene(&scene, 1.0).expect("a mesh");
+    // Some radiosities: the same for both, whatever they are.
+    let materials = patches.polygons().map(|patch| patch.material());
+    let emission: Vec<DVec3> = materials.map(|material| DVec3::from(material.emission) * PI).collect();
+    let some = |k: usize| emission[k] + DVec3::new(1.0, 2.0, 3.0) * (0.1 + (k % 7) as f64 * 0.1);
+    let total: Vec<DVec3> = (0..emission.len()).map(some).collect();
+    let indirect = Indirect::new(&patches, &of, scene.polygon_count(), &emission, &total);
+    let of_shading = |shading, with_indirect: bool| {
+        let brdfs = scene.materials().iter().map(|_| -> Box<dyn Brdf> {
+            let matt = Lambert::new(DVec3::new(0.5, 0.4, 0.3)).expect("a BRDF");
+            let gloss = Phong::new(DVec3::splat(0.4), 12.0).expect("a BRDF");
+            Box::new(Sum::new(vec![Box::new(matt), Box::new(gloss)]))
+        });
+        let options = ShaderOptions { shading, ..ShaderOptions::default() };
+        let shader = Shader::with_brdfs(SceneOrder::new(&scene), brdfs.collect(), Lighting::default(), options)
+            .expect("a shader");
+        if with_indirect { shader.with_indirect(indirect.clone()).expect("its patches") } else { shader }
+    };
+    for with_indirect in [false, true] {
+        let exact = of_shading(Shading::Contour, with_indirect);
+        let rays = of_shading(Shading::Rays { rays: 1000 }, with_indirect);
+        let floor = scene.pieces().find(|piece| scene.polygon(piece.polygon()).material().name == "floor");
+        let floor = floor.expect("a floor").id();
+        let middle: DVec3 = scene.piece(floor).points().sum::<DVec3>() / scene.piece(floor).points().len() as f64;
+        let spot = Spot { piece: floor, side: Side::Front, near: middle };
+        let viewer = DVec3::new(0.8, 0.3, 0.5);
+        let expected = exact.reflected(&spot, viewer, 0).expect("shaded");
+        let runs: Vec<DVec3> = (0..40).map(|seed| rays.reflected(&spot, viewer, seed).expect("shaded")).collect();
+        let mean = runs.iter().sum::<DVec3>() / 40.0;
+        let variance = runs.iter().map(|run| (*run - mean) * (*run - mean)).sum::<DVec3>() / 39.0;
+        let error = DVec3::from((variance / 40.0).to_array().map(f64::sqrt));
+        let off = (mean - expected).abs();
+        assert!(off.cmple(error * 5.0 + 1e-9).all(), "{with_indirect}: {expected} {mean} +- {error}");
+        assert!(
+            error.max_element() < 0.05 * expected.max_element() && expected.min_element() > 0.0,
+            "{expected} {error}"
+        );
+    }
+}
+
+#[test]
+fn a_mirror_shows_what_is_there() {
+    // A mirror at z = 0, and a wall at x = 5 that glows in two colours, below and above z = 1.5.
+    let wall = |low: f64, high: f64| [[5.0, -9.0, low], [5.0, -9.0, high], [5.0, 9.0, high], [5.0, 9.0, low]];
+    let glow = |name: &str, emission: [f64; 3]| Material { emission, ..Material::new(name) };
+    let face = vec![vec![0, 1, 2, 3]];
+    let scene = Scene::builder()
+        .mesh(&square([-5.0, -5.0], [5.0, 5.0], 0.0), &face, material("mirror", 0.0, 0.0))
+        .mesh(&wall(0.0, 1.5), &face, glow("low", [1.0, 0.0, 0.0]))
+        .mesh(&wall(1.5, 9.0), &face, glow("high", [0.0, 1.0, 0.0]))
+        .build()
+        .expect("a scene");
+    let reflectance = DVec3::splat(0.8);
+    let brdfs = scene.materials().iter().map(|material| -> Box<dyn Brdf> {
+        if material.name == "mirror" {
+            Box::new(Mirror::new(Fresnel::ALL))
+        } else {
+            Box::new(Lambert::new(reflectance).expect("a BRDF"))
+        }
+    });
+    let sky = DVec3::new(0.0, 0.0, 3.0);
+    let lighting = Lighting { sky: Some(Sky::constant(sky).expect("a sky")), ..Lighting::default() };
+    let order = SceneOrder::new(&scene);
+    let shader = Shader::with_brdfs(order, brdfs.collect(), lighting, ShaderOptions::default()).expect("a shader");
+    let (eye, mut seen) = (DVec3::new(-2.0, 0.2, 2.0), [0; 3]);
+    for k in 0..400 {
+        let at = DVec3::new(-1.9 + 6.8 * f64::from(k % 20) / 19.0, -4.0 + 8.0 * f64::from(k / 20) / 19.0, 0.0);
+        let viewer = eye - at;
+        let found = shader.reflected(&Spot { near: at, ..floor_spot(0.0, 0.0) }, viewer, 0).expect("shaded");
+        // Where the mirrored ray meets the wall's plane.
+        let way = DVec3::new(-viewer.x, -viewer.y, viewer.z);
+        let meets = at + way * ((5.0 - at.x) / way.x);
+        let (which, expected) = if way.x <= 0.0 || meets.y.abs() > 9.0 || meets.z > 9.0 {
+            (2, sky)
+        } else {
+            // What it emits and what it reflects of the sky and of the mirror, where nothing is matt.
+            let spot = Spot { piece: PieceId(if meets.z < 1.5 { 1 } else { 2 }), side: Side::Front, near: meets };
+            let which = usize::from(meets.z >= 1.5);
+            (which, shader.emitted(&spot) + shader.reflected(&spot, -way, 0).expect("shaded"))
+        };
+        seen[which] += 1;
+        assert!((found - expected).abs().max_element() < 1e-9, "{at}: {found} {expected}");
+    }
+    assert!(seen.iter().all(|&count| count > 10), "{seen:?}");
+    // Two mirrors that face each other end.
+    let both = Scene::builder()
+        .mesh(&square([-5.0, -5.0], [5.0, 5.0], 0.0), &face, material("mirror", 0.0, 0.0))
+        .mesh(&square([-5.0, -5.0], [5.0, 5.0], 1.0), &[vec![3, 2, 1, 0]], material("mirror", 0.0, 1.0))
+        .build()
+        .expect("a scene");
+    let brdfs: Vec<Box<dyn Brdf>> =
+        both.materials().iter().map(|_| -> Box<dyn Brdf> { Box::new(Mirror::new(Fresnel::ALL)) }).collect();
+    let order = SceneOrder::new(&both);
+    let options = ShaderOptions { mirrors: 5, ..ShaderOptions::default() };
+    let shader = Shader::with_brdfs(order, brdfs, Lighting::default(), options).expect("a shader");
+    // Of five rays three meet the lid, which glows.
+    let found = shader.reflected(&floor_spot(0.0, 0.0), DVec3::Z, 0).expect("shaded");
+    assert_eq!(found, DVec3::splat(3.0));
+}
+
+#[test]
+fn lights_without_extent_cast_sharp_shadows() {
+    let scene = half_hidden();
+    let (position, intensity) = (DVec3::new(0.5, 0.2, 2.5), DVec3::new(4.0, 5.0, 6.0));
+    let towards = DVec3::new(-1.0, 0.0, 1.0);
+    let sun = DVec3::new(3.0, 2.0, 1.0);
+    let lights = [Light::Point { position, intensity }, Light::Directional { towards, irradiance: sun }];
+    for (k, light) in lights.into_iter().enumerate() {
+        let lighting = Lighting { lights: vec![light], ..Lighting::default() };
+        let with = Shader::new(SceneOrder::new(&scene), lighting, ShaderOptions::default()).expect("a shader");
+        let without = shader(&scene, Shading::Contour);
+        let mut lit = 0;
+        for step in 0..400 {
+            let at =
+                DVec3::new(-3.9 + 7.8 * f64::from(step % 20) / 19.3, -3.9 + 7.8 * f64::from(step / 20) / 19.3, 0.0);
+            let spot = floor_spot(at.x, at.y);
+            let radiance = |shader: &Shader| shader.reflected(&spot, DVec3::Z, 0).expect("shaded");
+            let found = radiance(&with) - radiance(&without);
+            // The plate is at z = 1.5 and x > 0, the lamp at z = 3 above it all.
+            let way = if k == 0 { position - at } else { towards };
+            let [plate, lamp] = [1.5, 3.0].map(|z| at + way * (z / way.z));
+            let in_lamp = k == 1 && lamp.x.abs() < 1.0 && lamp.y.abs() < 1.0;
+            let expected = if plate.x > 0.0 || in_lamp {
+                DVec3::ZERO
+            } else if k == 0 {
+                intensity * (RHO / PI * way.z / way.length().powi(3))
+            } else {
+                sun * (RHO / PI * std::f64::consts::FRAC_1_SQRT_2)
+            };
+            lit += usize::from(expected != DVec3::ZERO);
+            assert!((found - expected).abs().max_element() < 1e-13, "{k} {at}: {found} {expected}");
+        }
+        assert!((50..350).contains(&lit), "{lit}");
+    }
+}
+
+#[test]
+fn a_white_sky_lights_what_it_reaches() {
+    // A floor below nothing but the sky: rho times its radiance.
+    let face = vec![vec![0, 1, 2, 3]];
+    let scene = Scene::builder()
+        .mesh(&square([-4.0, -4.0], [4.0, 4.0], 0.0), &face, material("floor", RHO, 0.0))
+        .build()
+        .expect("a scene");
+    let overcast = Sky::overcast(DVec3::ONE, DVec3::Z).expect("a sky");
+    let constant = Sky::constant(DVec3::ONE).expect("a sky");
+    // 7 pi / 9 of an overcast sky, by cubature to a thousandth.
+    for (sky, expected, tolerance) in [(constant, RHO, 1e-14), (overcast, RHO * 7.0 / 9.0, 1e-3)] {
+        let lighting = Lighting { sky: Some(sky), ..Lighting::default() };
+        let shader = Shader::new(SceneOrder::new(&scene), lighting, ShaderOptions::default()).expect("a shader");
+        let found = shader.reflected(&floor_spot(0.3, 0.2), DVec3::new(1.0, 0.0, 1.0), 0).expect("shaded");
+        assert!((found - expected).abs().max_element() < tolerance, "{found} {expected}");
+        assert_eq!(shader.background(DVec3::NEG_Z), if expected == RHO { DVec3::ONE } else { DVec3::ZERO });
+    }
+}
+
+#[test]
+fn what_cannot_be_rendered_is_said() {
+    let scene = half_hidden();
+    let with = |shading| {
+        Shader::new(SceneOrder::new(&scene), Lighting::default(), ShaderOptions { shading, ..ShaderOptions::default() })
+    };
+    for shading in [Shading::Hemicube { resolution: 3 }, Shading::Rays { rays: 0 }] {
+        assert!(matches!(with(shading), Err(RenderError::Baseline(_))), "{shading:?}");
+    }
+    let none = Shader::with_brdfs(SceneOrder::new(&scene), Vec::new(), Lighting::default(), ShaderOptions::default());
+    assert!(matches!(none, Err(RenderError::WrongBrdfs { found: 0, expected: 3 })));
+    let shader = shader(&scene, Shading::Contour);
+    let below = shader.reflected(&floor_spot(0.0, 0.0), DVec3::NEG_Z, 0);
+    assert!(matches!(below, Err(RenderError::Reflect { polygon: PolygonId(0), .. })), "{below:?}");
+    let nowhere = shader.reflected(&floor_spot(f64::NAN, 0.0), DVec3::Z, 0);
+    assert!(matches!(nowhere, Err(RenderError::Surface(_))), "{nowhere:?}");
+    let camera = Frustum::new(DVec3::Y, DVec3::Z, 40.0, 1.0).expect("a camera");
+    let of = |eye, size| render(&shader, eye, &camera, size, &|_| ());
+    assert!(matches!(of(DVec3::ONE, UVec2::new(0, 4)), Err(RenderError::Size(_))));
+    assert!(matches!(of(DVec3::NAN, UVec2::new(4, 4)), Err(RenderError::View { from: "the camera", .. })));
+    let (_, indirect) = furnace(9.0, 0.5, 1.0);
+    assert!(matches!(shader.with_indirect(indirect), Err(RenderError::OtherPatches { found: 6, expected: 3 })));
+}
+
+#[test]
+fn odd_cameras_see_what_there_is() {
+    let scene = half_hidden();
+    let shader = shader(&scene, Shading::Contour);
+    // On the floor, in its plane, on its edge, inside of the lamp, and with nothing in view.
+    let eyes = [[0.0, 0.0, 0.0], [-9.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 0.0, 3.0], [90.0, 90.0, 90.0]];
+    for eye in eyes {
+        for degrees in [1e-9, 60.0, 179.9] {
+            let camera = Frustum::new(DVec3::new(1.0, 0.2, 0.1), DVec3::Z, degrees, 1.0).expect("a camera");
+            let picture: Result<Rendered, _> = render(&shader, eye.into(), &camera, UVec2::new(7, 7), &|_| ());
+            let picture = picture.expect("a picture").picture;
+            assert!(picture.pixels().iter().all(|pixel| pixel.is_finite() && pixel.min_element() >= 0.0), "{eye:?}");
+        }
+    }
+}
