@@ -142,3 +142,16 @@ fn what_is_wrong_is_said_in_one_line() {
         assert!(!folder.exists("x.png"), "{line}");
     }
 }
+
+#[test]
+fn exr_has_radiances_or_says_what_it_takes() {
+    let folder = Folder::new("render-exr");
+    let line = format!("render box.obj {CAMERA} --size 8x8 --direct -o x.exr");
+    if cfg!(feature = "exr") {
+        folder.run(&line, 0);
+        assert!(fs::read(folder.path("x.exr")).expect("a file").starts_with(&[0x76, 0x2f, 0x31, 0x01]));
+    } else {
+        assert!(folder.run(&line, 2).contains("build it with --features exr"));
+        assert!(!folder.exists("x.exr"));
+    }
+}

@@ -172,7 +172,8 @@ fn hemicubes_and_rays_come_near_contours_and_only_those_are_even() {
     let off = exact.iter().zip(&cubes).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     // A lamp of form factor 0.13 covers some 30 by 30 pixels of the top face: a row more or less is a thirtieth of it.
     assert!(off < 0.1 * RHO * GLOW * 0.13 && off > 1e-4, "{off}");
-    assert!(bumps(&cubes) > 20.0 * bumps(&exact), "{} {}", bumps(&cubes), bumps(&exact));
+    // The exact field has kinks too, where the half shadow begins and ends.
+    assert!(bumps(&cubes) > 10.0 * bumps(&exact), "{} {}", bumps(&cubes), bumps(&exact));
     // Each within five standard errors of the exact form factor, as many independent rays have.
     let count = 4096;
     let rays = field(Shading::Rays { rays: count });
@@ -206,7 +207,7 @@ fn gloss_and_interreflection_agree_with_rays_within_their_noise() {
     };
     for with_indirect in [false, true] {
         let exact = of_shading(Shading::Contour, with_indirect);
-        let rays = of_shading(Shading::Rays { rays: 1000 }, with_indirect);
+        let rays = of_shading(Shading::Rays { rays: 4000 }, with_indirect);
         let floor = scene.pieces().find(|piece| scene.polygon(piece.polygon()).material().name == "floor");
         let floor = floor.expect("a floor").id();
         let middle: DVec3 = scene.piece(floor).points().sum::<DVec3>() / scene.piece(floor).points().len() as f64;
