@@ -8,7 +8,7 @@ use nusselt::picture::PixelParts;
 use nusselt::radiosity::SurfaceOptions;
 use nusselt::render::{Indirect, RenderError, Rendered, Shader, ShaderOptions, Shading, Spot, render};
 use nusselt::samples::{Kind, generate};
-use nusselt::scene::{Material, PieceId, PolygonId, Scene, Side};
+use nusselt::scene::{Material, PieceId, PolygonId, PolygonRef, Scene, Side};
 use std::f64::consts::PI;
 
 fn material(name: &str, diffuse: f64, emission: f64) -> Material {
@@ -189,7 +189,7 @@ fn gloss_and_interreflection_agree_with_rays_within_their_noise() {
     let scene = generate(Kind::Room, 300, 2).expect("a room").to_builder().build().expect("a scene");
     let (patches, of) = mesh_scene(&scene, 1.0).expect("a mesh");
     // Some radiosities: the same for both, whatever they are.
-    let materials = patches.polygons().map(|patch| patch.material());
+    let materials = patches.polygons().map(PolygonRef::material);
     let emission: Vec<DVec3> = materials.map(|material| DVec3::from(material.emission) * PI).collect();
     let some = |k: usize| emission[k] + DVec3::new(1.0, 2.0, 3.0) * (0.1 + (k % 7) as f64 * 0.1);
     let total: Vec<DVec3> = (0..emission.len()).map(some).collect();

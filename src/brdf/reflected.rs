@@ -48,7 +48,6 @@ pub enum ReflectError {
 }
 
 /// A surface that reflects towards a viewer.
-#[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     frame: Frame,
     /// Towards the viewer, in the surface's frame.

@@ -37,7 +37,7 @@ impl Face {
     }
 
     /// The reverse of [`Face::local`].
-    pub(super) fn from_local(self, [u, v, w]: [f64; 3]) -> [f64; 3] {
+    pub(super) fn to_frame(self, [u, v, w]: [f64; 3]) -> [f64; 3] {
         match self {
             Self::Top => [u, v, w],
             Self::PlusX => [w, u, v],
@@ -117,7 +117,7 @@ mod tests {
         for face in Face::ALL {
             let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| DVec3::from(face.local(v)));
             assert_eq!(a.cross(b), c, "{face:?}");
-            assert_eq!(face.from_local(face.local([1.0, 2.0, 3.0])), [1.0, 2.0, 3.0], "{face:?}");
+            assert_eq!(face.to_frame(face.local([1.0, 2.0, 3.0])), [1.0, 2.0, 3.0], "{face:?}");
         }
     }
 }

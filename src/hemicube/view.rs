@@ -265,7 +265,7 @@ impl<'a> HemicubeView<'a> {
                 f(HemicubePixel {
                     piece: (item as usize != covered.len()).then_some(PieceId(item)),
                     factor: antiderivative[column + 1] - antiderivative[column],
-                    centre: face.from_local([at(column) - 1.0, v, 1.0]),
+                    centre: face.to_frame([at(column) - 1.0, v, 1.0]),
                     frame: self.frame,
                 });
             }

@@ -4,7 +4,7 @@ use crate::picture::Picture;
 use exr::prelude::{Encoding, Image, SpecificChannels, WritableImage};
 use std::io::{self, Seek, Write};
 
-/// Writes a picture of linear colours as OpenEXR, with 32 bits a channel, losslessly compressed: red, green and blue as they are, however bright.
+/// Writes a picture of linear colours as `OpenEXR`, with 32 bits a channel, losslessly compressed: red, green and blue as they are, however bright.
 ///
 /// # Errors
 /// Those of `out`.

@@ -61,13 +61,18 @@ impl Indirect {
         let count = self.patches.polygon_count();
         let reflected: Vec<DVec3> = self.radiosity.iter().zip(&self.emission).map(|(&b, &e)| b - e).collect();
         let nothing = vec![DVec3::ZERO; count];
-        let matt = |patch: usize| self.patches.polygon(PolygonId(patch as u32)).material().diffuse != [0.0; 3];
-        let receives: Vec<DVec3> = (0..count).map(|k| if matt(k) { DVec3::ONE } else { DVec3::ZERO }).collect();
+        let share = |k: u32| if self.is_matt(PolygonId(k)) { DVec3::ONE } else { DVec3::ZERO };
+        let receives: Vec<DVec3> = (0..count as u32).map(share).collect();
         let gather = Gather::new(self.order.clone(), &nothing, &receives, &reflected);
         let surface = Surface::new(&self.patches, &self.of, &gather, options)?;
         let starts = (0..=count).map(|k| surface.patches.partition_point(|patch| patch.index() < k)).collect();
         self.surface = Some(Irradiance { surface, starts });
         Ok(self)
+    }
+
+    /// True if the material of a patch says that it reflects diffusely.
+    fn is_matt(&self, patch: PolygonId) -> bool {
+        DVec3::from(self.patches.polygon(patch).material().diffuse) != DVec3::ZERO
     }
 
     /// How many corners the irradiance was gathered at; 0 if it is gathered for each point.
@@ -94,7 +99,7 @@ impl Indirect {
     /// The interpolated irradiance of a front; `None` if there is none, or if the material was matt and black when it was gathered.
     pub(super) fn irradiance(&self, patch: PolygonId, side: Side, point: DVec3) -> Option<DVec3> {
         let Irradiance { surface, starts } = self.surface.as_ref().filter(|_| side == Side::Front)?;
-        if self.patches.polygon(patch).material().diffuse == [0.0; 3] {
+        if !self.is_matt(patch) {
             return None;
         }
         let triangles = &surface.triangles[starts[patch.index()]..starts[patch.index() + 1]];

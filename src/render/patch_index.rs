@@ -1,6 +1,6 @@
 //! Finding the patch that a point of a polygon is on.
 
-use crate::scene::{PolygonId, Scene};
+use crate::scene::{PieceRef, PolygonId, Scene};
 use glam::{DVec2, DVec3, UVec2};
 
 /// The patches of each polygon, in the cells of a grid over it.
@@ -73,7 +73,7 @@ impl PatchIndex {
 
 impl Grid {
     fn new(patches: &Scene, list: &[PolygonId]) -> Self {
-        let points = |patch: PolygonId| patches.polygon(patch).pieces().flat_map(|piece| piece.points());
+        let points = |patch: PolygonId| patches.polygon(patch).pieces().flat_map(PieceRef::points);
         let Some(piece) = list.first().and_then(|&patch| patches.polygon(patch).pieces().next()) else {
             return Self::default();
         };

@@ -2,10 +2,10 @@
 
 use super::leaves::Leaves;
 use super::shader::{Desk, Place, Shading};
-use super::{Indirect, RenderError, Shader};
+use super::{RenderError, Shader};
 use crate::contour::{SceneOrder, Viewpoint};
 use crate::hemicube::Hemicube;
-use crate::scene::{PieceId, PolygonId, Side};
+use crate::scene::{PieceId, Side};
 use glam::DVec3;
 use std::f64::consts::PI;
 
@@ -100,13 +100,9 @@ impl Sum<'_> {
         let emitted = DVec3::from(self.order.scene().polygon(piece.polygon()).material().emission);
         let is_emitting = side == Some(Side::Front) || self.shader.lighting.is_two_sided;
         match (&self.shader.indirect, is_emitting) {
-            (Some(indirect), _) if side == Some(Side::Front) => self.of_patch(indirect, piece.polygon()),
+            (Some(indirect), _) if side == Some(Side::Front) => indirect.radiance(piece.polygon(), side),
             (_, true) => emitted,
             (_, false) => DVec3::ZERO,
         }
-    }
-
-    fn of_patch(&self, indirect: &Indirect, patch: PolygonId) -> DVec3 {
-        indirect.radiance(patch, Some(Side::Front))
     }
 }

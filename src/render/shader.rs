@@ -4,11 +4,11 @@ use super::leaves::Leaves;
 use super::{Indirect, RenderError, lights};
 use crate::brdf::{self, Brdf, Emission, Lighting, ReflectError};
 use crate::contour::{Cell, ContourImage, Domain, SceneOrder, ViewError, ViewSpace, Viewpoint, Windows};
+use crate::hemicube::Hemicube;
 #[cfg(feature = "rays")]
-use crate::hemicube::Rays;
-use crate::hemicube::{BaselineError, Hemicube};
+use crate::hemicube::{BaselineError, Rays};
 use crate::integral::CubatureOptions;
-use crate::scene::{PieceId, PolygonId, Scene, Side};
+use crate::scene::{PieceId, PolygonId, PolygonRef, Scene, Side};
 use glam::DVec3;
 use std::sync::{Mutex, PoisonError};
 
@@ -119,7 +119,7 @@ impl Shader {
             return Err(RenderError::WrongBrdfs { found, expected });
         }
         let emitters = scene.polygons().filter(|polygon| polygon.material().is_emitter() && polygon.pieces().len() > 0);
-        let emitters: Vec<PolygonId> = emitters.map(|polygon| polygon.id()).collect();
+        let emitters: Vec<PolygonId> = emitters.map(PolygonRef::id).collect();
         let lamps = if lighting.sky.is_some() || emitters.len() > MOST_WINDOWS {
             Some(Domain::Above)
         } else {

@@ -57,7 +57,7 @@ pub(crate) struct Render {
     #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true)]
     up: Option<DVec3>,
     /// A picture for each line of this file: the eye, the point looked at and the field of view, seven numbers separated
-    /// by commas or blanks. -o x.png writes x_0001.png, x_0002.png and on, all with one exposure
+    /// by commas or blanks. -o x.png writes `x_0001.png` and on, all with one exposure
     #[arg(long, value_name = "PATH.csv")]
     frames: Option<PathBuf>,
     /// The picture's width and height in pixels
