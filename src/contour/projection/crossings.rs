@@ -34,7 +34,7 @@ impl Piece {
 /// Pieces of polylines by number, sorted into squares: what they cost is theirs, and the pairs within each.
 pub(super) struct Pieces {
     square: f64,
-    pieces: Vec<Piece>,
+    all: Vec<Piece>,
     squares: FxHashMap<[i64; 2], Vec<u32>>,
 }
 
@@ -46,15 +46,15 @@ impl Pieces {
                 squares.entry(place).or_default().push(number);
             }
         }
-        Self { square, pieces, squares }
+        Self { square, all: pieces, squares }
     }
 
     pub(super) fn len(&self) -> usize {
-        self.pieces.len()
+        self.all.len()
     }
 
     pub(super) fn get(&self, number: u32) -> Piece {
-        self.pieces[number as usize]
+        self.all[number as usize]
     }
 
     /// Breaks a piece at a point. It keeps the first half; the second one gets the number that is returned.
@@ -63,9 +63,9 @@ impl Pieces {
         for place in whole.squares(self.square) {
             self.squares.entry(place).or_default().retain(|&other| other != number);
         }
-        let second = self.pieces.len() as u32;
-        self.pieces[number as usize].ends[1] = middle;
-        self.pieces.push(Piece { from, ends: [middle, whole.ends[1]], ..whole });
+        let second = self.all.len() as u32;
+        self.all[number as usize].ends[1] = middle;
+        self.all.push(Piece { from, ends: [middle, whole.ends[1]], ..whole });
         for half in [number, second] {
             for place in self.get(half).squares(self.square) {
                 self.squares.entry(place).or_default().push(half);
@@ -77,7 +77,7 @@ impl Pieces {
     /// Those that meet others but at points that both have, by number; only pairs with one of `new` (ascending) are looked at. Exact for the
     /// coordinates as they are.
     pub(super) fn meeting(&self, new: &[u32]) -> Vec<u32> {
-        let places = if new.len() == self.pieces.len() {
+        let places = if new.len() == self.all.len() {
             self.squares.keys().copied().collect()
         } else {
             let mut places: Vec<_> = new.iter().flat_map(|&number| self.get(number).squares(self.square)).collect();
@@ -85,9 +85,11 @@ impl Pieces {
             places.dedup();
             places
         };
-        let mut is_new = vec![false; self.pieces.len()];
-        new.iter().for_each(|&number| is_new[number as usize] = true);
-        let mut meets = vec![false; self.pieces.len()];
+        let mut is_new = vec![false; self.all.len()];
+        for &number in new {
+            is_new[number as usize] = true;
+        }
+        let mut meets = vec![false; self.all.len()];
         let mut sorted = Vec::new();
         for place in places {
             let Some(numbers) = self.squares.get(&place) else { continue };
@@ -171,7 +173,7 @@ mod tests {
             assert_eq!(pieces.meeting(&all), [1, 2, 4, 5], "{square}");
             let second = pieces.halve(1, 1.5, DVec2::from(middle));
             assert_eq!(second, 6);
-            let anew = Pieces::new(pieces.pieces.clone(), square);
+            let anew = Pieces::new(pieces.all.clone(), square);
             let all: Vec<u32> = (0..7).collect();
             // The bars far away are no matter of the halves.
             let expected: Vec<u32> = anew.meeting(&all).into_iter().filter(|number| ![4, 5].contains(number)).collect();

@@ -370,7 +370,9 @@ impl<'a> Flattener<'a> {
                 }
             }
             if new.len() == faults.len() {
-                faults.iter().for_each(|&number| is_tangled[pieces.get(number).line as usize] = true);
+                for number in faults {
+                    is_tangled[pieces.get(number).line as usize] = true;
+                }
                 break;
             }
             room -= new.len() - faults.len();
