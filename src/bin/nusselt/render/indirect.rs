@@ -67,8 +67,10 @@ impl Interreflection {
         }
         let (patches, of) = mesh_scene(&scene, longest).map_err(|error| failed(&error))?;
         let options = ExchangeOptions { tolerance: self.tolerance, ..ExchangeOptions::default() };
-        let exchange = Exchange::new(&patches, PatchPlan::Polygons, options).map_err(|error| failed(&error))?;
-        let mut solver = match Solver::new(&patches, &exchange, SolverOptions::default()) {
+        // The same patches as parts of whole polygons, of which there are fewer to see.
+        let plan = PatchPlan::Mesh { longest_edge: longest };
+        let exchange = Exchange::new(&scene, plan, options).map_err(|error| failed(&error))?;
+        let mut solver = match Solver::new(&scene, &exchange, SolverOptions::default()) {
             Err(RadiosityError::Dark) => return Ok((shader, Solved::default())),
             solver => solver.map_err(|error| failed(&error))?,
         };
