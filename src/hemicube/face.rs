@@ -117,7 +117,8 @@ mod tests {
         for face in Face::ALL {
             let [a, b, c] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|v| DVec3::from(face.local(v)));
             assert_eq!(a.cross(b), c, "{face:?}");
-            assert_eq!(face.to_frame(face.local([1.0, 2.0, 3.0])), [1.0, 2.0, 3.0], "{face:?}");
+            let back = DVec3::from(face.to_frame(face.local([1.0, 2.0, 3.0])));
+            assert_eq!(back, DVec3::new(1.0, 2.0, 3.0), "{face:?}");
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Pictures as EXR.
 
 use crate::picture::Picture;
-use exr::prelude::{Encoding, Image, SpecificChannels, WritableImage};
+use exr::prelude::{Encoding, Image, SpecificChannels, Vec2, WritableImage};
 use std::io::{self, Seek, Write};
 
 /// Writes a picture of linear colours as `OpenEXR`, with 32 bits a channel, losslessly compressed: red, green and blue as they are, however bright.
@@ -10,7 +10,7 @@ use std::io::{self, Seek, Write};
 /// Those of `out`.
 pub fn write_exr(picture: &Picture, out: impl Write + Seek) -> io::Result<()> {
     let size = picture.size();
-    let pixel = |at: exr::prelude::Vec2<usize>| {
+    let pixel = |at: Vec2<usize>| {
         let [red, green, blue] = picture.pixel(at.x() as u32, at.y() as u32).to_array().map(|x| x as f32);
         (red, green, blue)
     };
@@ -26,7 +26,9 @@ pub fn write_exr(picture: &Picture, out: impl Write + Seek) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::{DVec3, UVec2};
+    use exr::image::RgbChannels;
+    use exr::prelude::{ReadChannels, ReadLayers};
+    use glam::{DVec3, UVec2, Vec3};
     use std::io::Cursor;
 
     #[test]
@@ -38,8 +40,8 @@ mod tests {
         write_exr(&picture, Cursor::new(&mut bytes)).unwrap();
         let reader = exr::prelude::read().no_deep_data().largest_resolution_level();
         let channels = reader.rgb_channels(
-            |size, _| vec![[0.0_f32; 3]; size.area()],
-            |pixels: &mut Vec<[f32; 3]>, at, (red, green, blue): (f32, f32, f32)| {
+            |size: Vec2<usize>, _: &RgbChannels| vec![[0.0_f32; 3]; size.area()],
+            |pixels: &mut Vec<[f32; 3]>, at: Vec2<usize>, (red, green, blue): (f32, f32, f32)| {
                 pixels[at.y() * 5 + at.x()] = [red, green, blue];
             },
         );
@@ -47,7 +49,7 @@ mod tests {
         let pixels = &image.layer_data.channel_data.pixels;
         assert_eq!(pixels.len(), 15);
         for (found, expected) in pixels.iter().zip(picture.pixels()) {
-            assert_eq!(*found, expected.as_vec3().to_array());
+            assert_eq!(Vec3::from(*found), expected.as_vec3());
         }
     }
 }

@@ -178,7 +178,7 @@ mod tests {
             // The bars far away are no matter of the halves.
             let expected: Vec<u32> = anew.meeting(&all).into_iter().filter(|number| ![4, 5].contains(number)).collect();
             assert_eq!(pieces.meeting(&[1, 6]), expected, "{square}");
-            assert_eq!(expected.is_empty(), middle == [3.5, 3.5], "{square}: {expected:?}");
+            assert_eq!(expected.is_empty(), DVec2::from(middle) == DVec2::splat(3.5), "{square}: {expected:?}");
         }
     }
 
