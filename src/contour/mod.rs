@@ -13,6 +13,7 @@ mod frustum;
 #[cfg(feature = "geo")]
 mod geo;
 mod image;
+mod joined;
 mod locate;
 mod neighbours;
 mod order;
@@ -38,6 +39,7 @@ pub use frustum::{Frustum, FrustumError};
 #[cfg(feature = "geo")]
 pub use geo::GeoRegion;
 pub use image::{Cell, CellId, ContourImage, TreeArc};
+pub(crate) use joined::Joiner;
 pub use locate::{Location, Region};
 pub use neighbours::Neighbour;
 pub use order::SceneOrder;
