@@ -194,8 +194,10 @@ fn what_is_hidden_does_not_matter() {
         rectangle([-0.4, 0.0], [-0.2, 0.4], 3.0),
         [[0.0, -0.1, 1.5], [0.0, 0.2, 1.5], [0.0, 0.2, 1.8], [0.0, -0.1, 1.8]].map(DVec3::from).to_vec(),
     ];
-    let with = |parts: &[Vec<DVec3>]| scene(&[&[lamp.clone()], parts].concat(), |k| if k == 0 { 1.0 } else { 0.0 });
-    let hidden = with(&[&[screen.clone()][..], &behind].concat());
+    let with = |parts: &[Vec<DVec3>]| {
+        scene(&[std::slice::from_ref(&lamp), parts].concat(), |k| if k == 0 { 1.0 } else { 0.0 })
+    };
+    let hidden = with(&[std::slice::from_ref(&screen), &behind].concat());
     let off = check(&SceneOrder::new(&hidden), DVec3::ZERO, DVec3::Z, 1e-4);
     assert!(off < 1e-9, "{off}");
     // Not behind: refused as ever.
@@ -206,7 +208,7 @@ fn what_is_hidden_does_not_matter() {
     // Partly behind: the stretch in which they are in line reaches out of the screen, or just does not.
     for (low, is_hidden) in [(-0.9, false), (-0.45, true)] {
         let long = [rectangle([0.0, 0.4], [2.0 * low, 0.3], 2.0), rectangle([-0.4, 0.0], [3.0 * low, 0.4], 3.0)];
-        let order = SceneOrder::new(&with(&[&[screen.clone()][..], &long].concat()));
+        let order = SceneOrder::new(&with(&[std::slice::from_ref(&screen), &long].concat()));
         let found = gradient(&order, DVec3::ZERO, DVec3::Z);
         assert_eq!(found.is_ok(), is_hidden, "{found:?}");
     }
