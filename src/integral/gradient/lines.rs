@@ -23,6 +23,9 @@ pub(super) struct Lines<'a> {
 /// An edge, and how its great circle is turned.
 type Turned = (Edge, CircleRelation);
 
+/// From an angle to another one, and the edge that is seen there.
+type Along = ([f64; 2], Option<Turned>);
+
 /// A part of a side of a region, from an angle to another one counted from the side's start, and the line behind it.
 pub(super) struct Part {
     pub(super) line: Line,
@@ -232,18 +235,14 @@ impl<'a> Lines<'a> {
     }
 
     /// A side cut where edges on its great circle begin and end, with the one that is seen along each part, if there is one, and how its great circle is turned.
-    fn edges_along(
-        &mut self,
-        side: &RegionSide,
-        circle: &exact::Splitter,
-    ) -> Result<Vec<([f64; 2], Option<Turned>)>, GradientError> {
+    fn edges_along(&mut self, side: &RegionSide, circle: &exact::Splitter) -> Result<Vec<Along>, GradientError> {
         // A great circle may have the name of an axis or of another edge.
         let normal = rough_normal(circle, self.image.viewpoint().eye()).normalize_or_zero();
         let key = normal.dot(AXIS).abs();
         let inward = if side.inside == Sign::Negative { -normal } else { normal };
         let whole = (0.0, side.length);
         let first = self.edges.partition_point(|edge| edge.key < key - NEAR);
-        let mut along: Vec<(Edge, CircleRelation, Vec<(f64, f64)>)> = Vec::new();
+        let mut along: Vec<(Turned, Vec<(f64, f64)>)> = Vec::new();
         for k in first..self.edges.len() {
             let edge = self.edges[k];
             if edge.key > key + NEAR {
@@ -253,15 +252,15 @@ impl<'a> Lines<'a> {
                 let spans = overlaps(whole, edge.span(inward, side.from));
                 let relation = self.kernel.compare_circles(circle, &self.splitter(&edge));
                 if !spans.is_empty() && relation != CircleRelation::Different {
-                    along.push((edge, relation, spans));
+                    along.push(((edge, relation), spans));
                 }
             }
         }
         let ends =
-            along.iter().flat_map(|(_, _, spans)| spans.iter().flat_map(|&(start, length)| [start, start + length]));
+            along.iter().flat_map(|(_, spans)| spans.iter().flat_map(|&(start, length)| [start, start + length]));
         let mut cuts: Vec<f64> = ends.chain([0.0, side.length]).collect();
         cuts.sort_by(f64::total_cmp);
-        let mut parts: Vec<([f64; 2], Option<Turned>)> = Vec::new();
+        let mut parts: Vec<Along> = Vec::new();
         for ends in cuts.windows(2) {
             let [from, to] = [ends[0], ends[1]];
             if to - from <= 0.0 {
@@ -271,11 +270,8 @@ impl<'a> Lines<'a> {
             let middle = 0.5 * (from + to);
             let covers =
                 |spans: &[(f64, f64)]| spans.iter().any(|&(start, length)| start < middle && middle < start + length);
-            let mut here: Vec<Turned> = along
-                .iter()
-                .filter(|(_, _, spans)| covers(spans))
-                .map(|&(edge, relation, _)| (edge, relation))
-                .collect();
+            let mut here: Vec<Turned> =
+                along.iter().filter(|(_, spans)| covers(spans)).map(|&(edge, _)| edge).collect();
             // Of edges on different lines all but one are hidden, or are in line on a stretch that is nothing but rounding.
             if part.1 > SHORTEST && here.iter().any(|(edge, _)| edge.line != here[0].0.line) {
                 here.retain(|(edge, _)| !self.is_hidden(edge, inward, side.from, part));
@@ -287,7 +283,7 @@ impl<'a> Lines<'a> {
             let edge = here.first().copied();
             match parts.last_mut() {
                 Some((angles, known)) if known.map(|(edge, _)| edge.line) == edge.map(|(edge, _)| edge.line) => {
-                    angles[1] = to
+                    angles[1] = to;
                 }
                 _ => parts.push(([from, to], edge)),
             }
