@@ -27,7 +27,9 @@ fn same(folder: &Folder, a: &str, b: &str) -> bool {
 #[test]
 fn the_cornell_box_is_as_it_was() {
     let folder = Folder::new("render");
-    let line = format!("render box.obj {CAMERA} --size 32x24 --patch 250 --tolerance 1e-4 --until 1e-5 --depth 1 --exposure 3");
+    let line = format!(
+        "render box.obj {CAMERA} --size 32x24 --patch 250 --tolerance 1e-4 --until 1e-5 --depth 1 --exposure 3"
+    );
     let summary = folder.parsed(&format!("{line} -o a.png --json"));
     assert_eq!(summary["schema"], "nusselt.render/1");
     assert_eq!(summary["size"], serde_json::json!([32, 24]));
