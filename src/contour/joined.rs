@@ -144,8 +144,8 @@ mod tests {
     }
 
     fn by_lamp(cell: Cell<'_>) -> Option<u32> {
-        let is_lit = crate::brdf::emitted_by_both_sides(cell).max_element() > 0.0;
-        by_polygon(cell).filter(|_| is_lit)
+        let is_lit = |polygon| cell.image().scene().polygon(polygon).material().is_emitter();
+        by_polygon(cell).filter(|_| cell.polygon().is_some_and(is_lit))
     }
 
     #[test]
