@@ -7,7 +7,9 @@ use glam::DVec3;
 use num_rational::BigRational;
 use num_traits::{Signed, Zero};
 use nusselt::bsp::{BspOptions, SceneBsp};
-use nusselt::contour::{CellId, ContourImage, Domain, Location, Region, Splitter, ViewOptions, Viewpoint};
+use nusselt::contour::{
+    Branch, BranchKind, CellId, ContourImage, Domain, Location, Region, Splitter, ViewOptions, Viewpoint,
+};
 use nusselt::exact::Sign;
 use nusselt::scene::{Scene, SupportingPlane};
 use nusselt::verify::{RayAnswer, RayOracle};
@@ -155,6 +157,26 @@ impl Cells {
     }
 }
 
+/// The region that a direction comes to in the contour tree, if it is on no great circle above that.
+fn walk(branch: Branch<'_>, image: &ContourImage, direction: &Vector) -> Option<Region> {
+    match branch.kind() {
+        BranchKind::Cell(cell) => Some(Region::Cell(cell.id())),
+        BranchKind::Outside => Some(Region::Outside),
+        BranchKind::Node { splitter, normal: rounded, negative, positive } => {
+            let normal = normal(image.scene(), &exact(image.viewpoint().eye()), splitter);
+            // A unit vector, and off by a few roundings of 2^-53 at most.
+            let [size, off] = [exact(rounded), cross(&normal, &exact(rounded))].map(|v| dot(&v, &v));
+            let hair = BigRational::from_float(1e-29).expect("finite");
+            assert!(dot(&normal, &exact(rounded)).is_positive() && off < &hair * dot(&normal, &normal), "{rounded}");
+            assert!((size - BigRational::from_float(1.0).expect("finite")).abs() < BigRational::from_float(1e-14)?);
+            let height = dot(&normal, direction);
+            (!height.is_zero())
+                .then(|| if height.is_positive() { positive } else { negative })
+                .and_then(|branch| walk(branch, image, direction))
+        }
+    }
+}
+
 /// How many answers of each kind there were.
 #[derive(Debug, Default, PartialEq, Eq)]
 struct Counts {
@@ -174,6 +196,10 @@ fn check(image: &ContourImage, directions: impl IntoIterator<Item = DVec3>, coun
         assert_eq!(location, cells.locate(direction), "from {eye} towards {direction}");
         for length in [3.0, 0.375, 2_f64.powi(1000), 2_f64.powi(-1070)] {
             assert_eq!(image.locate(direction * length), location, "{length} times {direction}");
+        }
+        match walk(image.tree(), image, &exact(direction)) {
+            Some(region) => assert_eq!(location.regions(), [region]),
+            None => assert!(!matches!(location, Location::Cell(_)), "a splitter runs through a cell"),
         }
         match &location {
             Location::Cell(cell) => {

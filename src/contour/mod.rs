@@ -5,6 +5,7 @@
 //! convex: not seen into yet, outside of the domain, or filled with one polygon. What is
 //! left open in the end shows the background.
 
+mod branch;
 mod certify;
 mod directions;
 mod domain;
@@ -32,6 +33,7 @@ mod windows;
 mod tests;
 
 pub use crate::scene::Splitter;
+pub use branch::{Branch, BranchKind};
 pub use domain::Domain;
 pub use edges::{EdgeStretch, EdgeTracer};
 pub use frustum::{Frustum, FrustumError};

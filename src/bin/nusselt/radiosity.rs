@@ -47,6 +47,9 @@ pub(crate) struct Radiosity {
     /// Solve the whole matrix instead: all rows of form factors are computed, and nothing but rounding (1e-12) is left
     #[arg(long, conflicts_with = "until")]
     full: bool,
+    /// Let patches send in advance what they will reflect, and take back what was too much: fewer shots in bright closed rooms
+    #[arg(long)]
+    overshoot: bool,
     /// Compute each form factor to this absolute error
     #[arg(long, value_name = "T", default_value = "1e-3", value_parser = parse_size, allow_hyphen_values = true)]
     tolerance: f64,
@@ -124,8 +127,8 @@ impl Radiosity {
         let exchange = Exchange::new(&patches, PatchPlan::Polygons, options).map_err(|error| self.about(&error))?;
         let order_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let mut solver =
-            Solver::new(&patches, &exchange, SolverOptions::default()).map_err(|error| self.about(&error))?;
+        let options = SolverOptions { overshoot: self.overshoot, ..SolverOptions::default() };
+        let mut solver = Solver::new(&patches, &exchange, options).map_err(|error| self.about(&error))?;
         let key = StateKey::new(&patches, self.tolerance);
         self.take_up(&key, &mut solver)?;
         self.solve(&key, &mut solver, common)?;

@@ -1,64 +1,117 @@
-//! Which of many polylines cross each other.
+//! Which pieces of many polylines cross each other, while they are halved.
 
 use glam::DVec2;
 use robust::{Coord, orient2d};
 use rustc_hash::FxHashMap;
 
-/// A stretch of a polyline between two of its points.
+/// A straight piece of a polyline.
 #[derive(Clone, Copy)]
-struct Segment {
-    /// The numbers of the polyline and of the stretch.
-    at: [u32; 2],
-    ends: [DVec2; 2],
+pub(super) struct Piece {
+    /// The number of the polyline.
+    pub(super) line: u32,
+    /// How far along it the piece begins, in any measure.
+    pub(super) from: f64,
+    pub(super) ends: [DVec2; 2],
 }
 
-impl Segment {
-    /// Where it begins along x.
+impl Piece {
     fn low(&self) -> f64 {
         self.ends[0].x.min(self.ends[1].x)
     }
+
+    fn high(&self) -> f64 {
+        self.ends[0].x.max(self.ends[1].x)
+    }
+
+    /// The squares that its box meets.
+    fn squares(&self, square: f64) -> impl Iterator<Item = [i64; 2]> + use<> {
+        let [p, q] = self.ends;
+        let [low, high] = [p.min(q), p.max(q)].map(|p| (p / square).floor().as_i64vec2());
+        (low.x..=high.x).flat_map(move |x| (low.y..=high.y).map(move |y| [x, y]))
+    }
 }
 
-/// The stretches of polylines that meet others but at points that both have, as numbers of polyline and stretch, ascending. Exact for the
-/// coordinates as they are.
-///
-/// Segments are sorted into squares of that size: the cost is theirs, and the pairs within each.
-pub(super) fn crossing(lines: &[Vec<DVec2>], square: f64) -> Vec<[u32; 2]> {
-    let mut squares: FxHashMap<[i64; 2], Vec<Segment>> = FxHashMap::default();
-    for (line, points) in (0..).zip(lines) {
-        for (k, pair) in (0..).zip(points.windows(2)) {
-            let segment = Segment { at: [line, k], ends: [pair[0], pair[1]] };
-            let [low, high] = [pair[0].min(pair[1]), pair[0].max(pair[1])].map(|p| (p / square).floor().as_i64vec2());
-            for x in low.x..=high.x {
-                for y in low.y..=high.y {
-                    squares.entry([x, y]).or_default().push(segment);
+/// Pieces of polylines by number, sorted into squares: what they cost is theirs, and the pairs within each.
+pub(super) struct Pieces {
+    square: f64,
+    all: Vec<Piece>,
+    squares: FxHashMap<[i64; 2], Vec<u32>>,
+}
+
+impl Pieces {
+    pub(super) fn new(pieces: Vec<Piece>, square: f64) -> Self {
+        let mut squares: FxHashMap<_, Vec<_>> = FxHashMap::default();
+        for (number, piece) in (0..).zip(&pieces) {
+            for place in piece.squares(square) {
+                squares.entry(place).or_default().push(number);
+            }
+        }
+        Self { square, all: pieces, squares }
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.all.len()
+    }
+
+    pub(super) fn get(&self, number: u32) -> Piece {
+        self.all[number as usize]
+    }
+
+    /// Breaks a piece at a point. It keeps the first half; the second one gets the number that is returned.
+    pub(super) fn halve(&mut self, number: u32, from: f64, middle: DVec2) -> u32 {
+        let whole = self.get(number);
+        for place in whole.squares(self.square) {
+            self.squares.entry(place).or_default().retain(|&other| other != number);
+        }
+        let second = self.all.len() as u32;
+        self.all[number as usize].ends[1] = middle;
+        self.all.push(Piece { from, ends: [middle, whole.ends[1]], ..whole });
+        for half in [number, second] {
+            for place in self.get(half).squares(self.square) {
+                self.squares.entry(place).or_default().push(half);
+            }
+        }
+        second
+    }
+
+    /// Those that meet others but at points that both have, by number; only pairs with one of `new` (ascending) are looked at. Exact for the
+    /// coordinates as they are.
+    pub(super) fn meeting(&self, new: &[u32]) -> Vec<u32> {
+        let places = if new.len() == self.all.len() {
+            self.squares.keys().copied().collect()
+        } else {
+            let mut places: Vec<_> = new.iter().flat_map(|&number| self.get(number).squares(self.square)).collect();
+            places.sort_unstable();
+            places.dedup();
+            places
+        };
+        let mut is_new = vec![false; self.all.len()];
+        for &number in new {
+            is_new[number as usize] = true;
+        }
+        let mut meets = vec![false; self.all.len()];
+        let mut sorted = Vec::new();
+        for place in places {
+            let Some(numbers) = self.squares.get(&place) else { continue };
+            // Long pieces that lie on each other share many squares.
+            if numbers.iter().all(|&number| meets[number as usize]) {
+                continue;
+            }
+            sorted.clear();
+            sorted.extend(numbers.iter().map(|&number| (number as usize, self.get(number))));
+            sorted.sort_by(|(_, s), (_, t)| s.low().total_cmp(&t.low()));
+            for (k, (s, first)) in sorted.iter().enumerate() {
+                for (t, second) in sorted[k + 1..].iter().take_while(|(_, second)| second.low() <= first.high()) {
+                    // Many may meet each other: the pairs of those that do are not told.
+                    let matters = (is_new[*s] || is_new[*t]) && !(meets[*s] && meets[*t]);
+                    if matters && meet(first.ends, second.ends) {
+                        (meets[*s], meets[*t]) = (true, true);
+                    }
                 }
             }
         }
+        (0..).zip(meets).filter_map(|(number, meets)| meets.then_some(number)).collect()
     }
-    let mut meets: Vec<Vec<bool>> = lines.iter().map(|points| vec![false; points.len()]).collect();
-    for segments in squares.values_mut() {
-        // Long pieces that lie on each other share many squares.
-        if segments.iter().all(|segment| meets[segment.at[0] as usize][segment.at[1] as usize]) {
-            continue;
-        }
-        segments.sort_by(|s, t| s.low().total_cmp(&t.low()));
-        for (k, first) in segments.iter().enumerate() {
-            let high = first.ends[0].x.max(first.ends[1].x);
-            for second in segments[k + 1..].iter().take_while(|second| second.low() <= high) {
-                let [s, t] = [first.at, second.at].map(|at| at.map(|number| number as usize));
-                // Many may meet each other: the pairs of those that do are not told.
-                if !(meets[s[0]][s[1]] && meets[t[0]][t[1]]) && meet(first.ends, second.ends) {
-                    (meets[s[0]][s[1]], meets[t[0]][t[1]]) = (true, true);
-                }
-            }
-        }
-    }
-    let stretches = |(line, meets): (u32, &Vec<bool>)| {
-        let met = (0..).zip(meets.clone()).filter(|&(_, meets)| meets);
-        met.map(move |(k, _)| [line, k])
-    };
-    (0..).zip(&meets).flat_map(stretches).collect()
 }
 
 /// True if two segments meet, but at an end that they have in common.
@@ -85,6 +138,49 @@ fn meet([a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn pieces(lines: &[Vec<DVec2>], square: f64) -> Pieces {
+        let of_line = |(line, points): (u32, &Vec<DVec2>)| {
+            let pairs = points.windows(2).map(|pair| [pair[0], pair[1]]).enumerate();
+            pairs.map(|(k, ends)| Piece { line, from: k as f64, ends }).collect::<Vec<_>>()
+        };
+        Pieces::new((0..).zip(lines).flat_map(of_line).collect(), square)
+    }
+
+    /// The numbers of line and stretch of all that meet others.
+    fn crossing(lines: &[Vec<DVec2>], square: f64) -> Vec<[u32; 2]> {
+        let pieces = pieces(lines, square);
+        let all: Vec<u32> = (0..pieces.len() as u32).collect();
+        let found = pieces.meeting(&all).into_iter().map(|number| pieces.get(number));
+        found.map(|piece| [piece.line, piece.from as u32]).collect()
+    }
+
+    /// What halves meet is what is found in pieces that are made anew.
+    #[test]
+    fn halves_meet_what_they_meet() {
+        // A tent whose second side's middle moves away from a bar that it touches, and a bar that it comes to touch.
+        let lines = [
+            vec![[0.0, 0.0], [2.0, 2.0], [4.0, 0.0]],
+            vec![[2.5, 0.5], [3.1, 1.1]],
+            vec![[2.0, -1.0], [2.9, 0.4]],
+            vec![[9.0, 9.0], [9.0, 8.0]],
+            vec![[8.0, 8.5], [10.0, 8.5]],
+        ];
+        let lines = lines.map(|line| line.into_iter().map(DVec2::from).collect::<Vec<_>>());
+        for (square, middle) in [0.3, 1.0, 7.0].into_iter().flat_map(|s| [[3.0, 0.5], [3.5, 3.5]].map(|m| (s, m))) {
+            let mut pieces = pieces(&lines, square);
+            let all: Vec<u32> = (0..pieces.len() as u32).collect();
+            assert_eq!(pieces.meeting(&all), [1, 2, 4, 5], "{square}");
+            let second = pieces.halve(1, 1.5, DVec2::from(middle));
+            assert_eq!(second, 6);
+            let anew = Pieces::new(pieces.all.clone(), square);
+            let all: Vec<u32> = (0..7).collect();
+            // The bars far away are no matter of the halves.
+            let expected: Vec<u32> = anew.meeting(&all).into_iter().filter(|number| ![4, 5].contains(number)).collect();
+            assert_eq!(pieces.meeting(&[1, 6]), expected, "{square}");
+            assert_eq!(expected.is_empty(), middle == [3.5, 3.5], "{square}: {expected:?}");
+        }
+    }
 
     #[test]
     fn lines_cross_where_segments_meet_away_from_common_points() {

@@ -6,7 +6,7 @@
 //! borders of a square, curves that do not cross have chords that do not cross.
 
 use super::corners::Corners;
-use super::crossings::crossing;
+use super::crossings::{Piece, Pieces};
 use super::{Projection, Projector, STEREOGRAPHIC_REACH};
 use crate::contour::ContourImage;
 use crate::contour::regions::mosaic::{Face, Mosaic, Part};
@@ -195,17 +195,18 @@ struct Inner {
 }
 
 impl Path<'_> {
-    /// Adds a point in the middle of a stretch of a curve, if it bends by more than rounding; gives its place.
-    fn halve(&mut self, stretch: usize, [p, q]: [DVec2; 2]) -> Option<DVec2> {
+    /// Adds a point in the middle of a piece of a curve, if it bends by more than rounding.
+    fn halve(&mut self, piece: Piece) -> Option<(f64, DVec2)> {
         let curve = self.curve.as_ref()?;
-        let from = if stretch == 0 { 0.0 } else { self.points[stretch - 1].0 };
+        let Piece { from, ends: [p, q], .. } = piece;
+        let stretch = self.points.partition_point(|point| point.0 <= from);
         let to = self.points.get(stretch).map_or(curve.length, |point| point.0);
         let middle = f64::midpoint(from, to);
         let place = curve.place(middle);
         let bends = place.distance(nearest_on_segment(place, p, q)) > f64::EPSILON;
         (bends && middle > from && middle < to).then(|| {
             self.points.insert(stretch, (middle, place));
-            place
+            (middle, place)
         })
     }
 }
@@ -280,19 +281,6 @@ impl Curve<'_> {
     }
 }
 
-/// The stretches of curves that have a corner between them and their chord, as numbers of path and stretch.
-fn between(paths: &[Path<'_>], lines: &[Vec<DVec2>], corners: &Corners) -> Vec<[u32; 2]> {
-    let mut found = Vec::new();
-    for (number, (path, line)) in (0..).zip(paths.iter().zip(lines)) {
-        let Some(curve) = &path.curve else { continue };
-        let normal = curve.axes[0].cross(curve.axes[1]);
-        let stretches = (0..).zip(line.windows(2));
-        let meets = stretches.filter(|(_, pair)| corners.are_between([pair[0], pair[1]], normal));
-        found.extend(meets.map(|(stretch, _)| [number, stretch]));
-    }
-    found
-}
-
 fn nearest_on_segment(p: DVec2, a: DVec2, b: DVec2) -> DVec2 {
     let ab = b - a;
     let along = (p - a).dot(ab) / ab.length_squared();
@@ -344,41 +332,50 @@ impl<'a> Flattener<'a> {
     /// halved until they do not: curves that do not cross may be nearer to each other than the tolerance.
     fn all_inner(&self, tolerance: f64) -> Inner {
         let mut paths: Vec<Path<'_>> = Vec::new();
-        let mut lines: Vec<Vec<DVec2>> = Vec::new();
+        let mut pieces: Vec<Piece> = Vec::new();
         for chain in 0..self.outlines.chains.len() as u32 {
             let run = Run { chain, forward: true };
             let path = self.path(chain, tolerance);
-            let points = path.points.iter().map(|point| point.1);
-            lines.push(std::iter::once(self.start(run)).chain(points).chain([self.end(run)]).collect());
+            let mut start = (0.0, self.start(run));
+            for &(angle, place) in path.points.iter().chain([&(f64::INFINITY, self.end(run))]) {
+                pieces.push(Piece { line: chain, from: start.0, ends: [start.1, place] });
+                start = (angle, place);
+            }
             paths.push(path);
         }
         let square = 2.0 * tolerance.sqrt();
         // Chords are bent by what their middles are off.
         let corners = Corners::new(self.corners(), square, 2.0 * tolerance);
+        let mut pieces = Pieces::new(pieces, square);
         // What stays nearer than rounding along all of its length would never end.
-        let mut room = ADDED * lines.iter().map(Vec::len).sum::<usize>();
-        let left = loop {
-            let mut faults = crossing(&lines, square);
-            faults.extend(between(&paths, &lines, &corners));
+        let mut room = ADDED * (pieces.len() + paths.len());
+        let mut new: Vec<u32> = (0..pieces.len() as u32).collect();
+        let mut is_tangled = vec![false; paths.len()];
+        loop {
+            let has_corner = |number: &u32| {
+                let Piece { line, ends, .. } = pieces.get(*number);
+                let curve = paths[line as usize].curve.as_ref();
+                curve.is_some_and(|curve| corners.are_between(ends, curve.axes[0].cross(curve.axes[1])))
+            };
+            let mut faults = pieces.meeting(&new);
+            faults.extend(new.iter().copied().filter(has_corner));
             faults.sort_unstable();
             faults.dedup();
-            let before = room;
-            // Those of one chain from its end, so that the numbers before stay.
-            for &[chain, stretch] in faults.iter().rev().take(room) {
-                let (path, line) = (&mut paths[chain as usize], &mut lines[chain as usize]);
-                if let Some(place) = path.halve(stretch as usize, [line[stretch as usize], line[stretch as usize + 1]])
-                {
-                    line.insert(stretch as usize + 1, place);
-                    room -= 1;
+            // The halves, and what cannot be halved and may be at fault again. The others have been found to be in order.
+            new = faults.clone();
+            for &number in faults.iter().take(room) {
+                let piece = pieces.get(number);
+                if let Some((angle, place)) = paths[piece.line as usize].halve(piece) {
+                    new.push(pieces.halve(number, angle, place));
                 }
             }
-            if room == before {
-                break faults;
+            if new.len() == faults.len() {
+                for number in faults {
+                    is_tangled[pieces.get(number).line as usize] = true;
+                }
+                break;
             }
-        };
-        let mut is_tangled = vec![false; lines.len()];
-        for [chain, _] in left {
-            is_tangled[chain as usize] = true;
+            room -= new.len() - faults.len();
         }
         let points = paths.into_iter().map(|path| path.points.into_iter().map(|point| point.1).collect()).collect();
         Inner { points, is_tangled }

@@ -57,7 +57,7 @@ pub fn write_radiosity_json(table: &RadiosityTable<'_>, out: impl Write) -> io::
     field(&mut out, "schema", &RADIOSITY_SCHEMA)?;
     field(&mut out, "shots", &solver.state().shots)?;
     let balance = solver.balance();
-    let Balance { emitted, absorbed, backs, background, unshot } = balance;
+    let Balance { emitted, absorbed, backs, background, unshot, .. } = balance;
     let [emitted, absorbed, backs, background, unshot] =
         [emitted, absorbed, backs, background, unshot].map(|power| power.to_array());
     let row = BalanceRow { emitted, absorbed, backs, background, unshot, defect: balance.defect() };

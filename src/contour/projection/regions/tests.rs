@@ -63,6 +63,12 @@ fn only_what_bends_is_halved() {
             let inner = path.points.iter().map(|point| point.1);
             std::iter::once(curve.place(0.0)).chain(inner).chain([curve.place(curve.length)]).collect::<Vec<_>>()
         };
+        // Of stretches only where they begin and their ends are looked at.
+        let piece = |path: &Path<'_>, stretch: usize| {
+            let from = if stretch == 0 { 0.0 } else { path.points[stretch - 1].0 };
+            let ends = places(path);
+            Piece { line: 7, from, ends: [ends[stretch], ends[stretch + 1]] }
+        };
         let mut path = Path { curve: Some(curve([DVec3::X, DVec3::Y])), points: Vec::new() };
         // Each time another stretch: the only one, the last, the first, one between.
         for (stretch, angles) in [
@@ -71,10 +77,9 @@ fn only_what_bends_is_halved() {
             (0, vec![0.125, 0.25, 0.375]),
             (2, vec![0.125, 0.25, 0.3125, 0.375]),
         ] {
-            let ends = places(&path);
-            let added = path.halve(stretch, [ends[stretch], ends[stretch + 1]]);
+            let added = path.halve(piece(&path, stretch));
             assert_eq!(path.points.iter().map(|point| point.0).collect::<Vec<_>>(), angles);
-            assert_eq!(added, Some(path.points[stretch].1));
+            assert_eq!(added, Some(path.points[stretch]));
             for (angle, place) in &path.points {
                 let seen = flattener.projector.frame().components(DVec3::new(angle.cos(), angle.sin(), 0.0));
                 assert!(place.distance(seen.truncate()) < 1e-15, "{angle} {place}");
@@ -82,10 +87,10 @@ fn only_what_bends_is_halved() {
         }
         // A great circle through the middle of the picture is a diameter.
         let mut straight = Path { curve: Some(curve([DVec3::X, DVec3::Z])), points: Vec::new() };
-        let ends = places(&straight);
-        assert_eq!(straight.halve(0, [ends[0], ends[1]]), None);
+        let whole = piece(&straight, 0);
+        assert_eq!(straight.halve(whole), None);
         assert!(straight.points.is_empty());
-        assert_eq!(Path { curve: None, points: Vec::new() }.halve(0, [DVec2::ZERO, DVec2::ONE]), None);
+        assert_eq!(Path { curve: None, points: Vec::new() }.halve(whole), None);
     });
 }
 
