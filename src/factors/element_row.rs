@@ -240,7 +240,7 @@ impl ElementRows<'_> {
         for column in columns {
             match elements.of_patch[column as usize][..] {
                 [other] if is_shareable && self.is_shareable(other) => {
-                    self.exchange_partly(number, other, effort, space)
+                    self.exchange_partly(number, other, effort, space);
                 }
                 _ if self.is_known(column, space) => self.integrate(number, column, effort.allowed(), space),
                 _ => {}
