@@ -250,7 +250,8 @@ impl ElementRows<'_> {
 
     /// What is exchanged with an element that is partly seen, as either of the two would find.
     ///
-    /// It is integrated over the larger one, which takes fewer points to the same accuracy of the exchange.
+    /// It is integrated over the smaller one. The larger one would take fewer points, but a small patch that is seen from a small part of a large one may be
+    /// missed by all of them.
     fn exchange_partly(&self, number: u32, other: u32, effort: Effort, space: &mut RowSpace) {
         let elements = self.blockers.elements;
         let [own, its] = [number, other].map(|k| &elements.all[k as usize]);
@@ -260,13 +261,11 @@ impl ElementRows<'_> {
             space.told.push(Told::of(other, None));
             return;
         }
-        let is_own = (own.area, other) > (its.area, number);
+        let is_own = (own.area, number) < (its.area, other);
         let (from, to) = if is_own { (own, its) } else { (its, own) };
         let its_parts = if is_own { Vec::new() } else { self.blockers.parts(its) };
         let parts = if is_own { &space.parts } else { &its_parts };
-        // As accurate as the smaller one's row asks for.
-        let allowed = effort.allowed() * (to.area / from.area);
-        let share = self.partly(from, parts, to, between, allowed, &mut space.hidden);
+        let share = self.partly(from, parts, to, between, effort.allowed(), &mut space.hidden);
         let exchange = Share { factor: from.area * share.factor.max(0.0), error: from.area * share.error };
         space.told.push(Told::of(other, Some(exchange)));
         space.found.seen[other as usize] = Seen::Integrated;
