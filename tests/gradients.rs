@@ -180,6 +180,57 @@ fn there_is_none_where_edges_are_in_line_or_polygons_edge_on() {
     assert_eq!(sphere.irradiance_gradient(|_| DVec3::ONE), Err(GradientError::NoNormal));
 }
 
+fn rectangle(x: [f64; 2], y: [f64; 2], z: f64) -> Vec<DVec3> {
+    [[x[0], y[0]], [x[1], y[0]], [x[1], y[1]], [x[0], y[1]]].map(|[x, y]| DVec3::new(x, y, z)).to_vec()
+}
+
+#[test]
+fn what_is_hidden_does_not_matter() {
+    let lamp = rectangle([-3.0, 3.0], [-3.0, 3.0], 4.0);
+    // Behind a screen: two edges in line, and a polygon seen edge-on.
+    let screen = rectangle([-0.6, 0.7], [-0.5, 0.8], 1.0);
+    let behind = [
+        rectangle([0.0, 0.4], [-0.3, 0.3], 2.0),
+        rectangle([-0.4, 0.0], [-0.2, 0.4], 3.0),
+        [[0.0, -0.1, 1.5], [0.0, 0.2, 1.5], [0.0, 0.2, 1.8], [0.0, -0.1, 1.8]].map(DVec3::from).to_vec(),
+    ];
+    let with = |parts: &[Vec<DVec3>]| {
+        scene(&[std::slice::from_ref(&lamp), parts].concat(), |k| if k == 0 { 1.0 } else { 0.0 })
+    };
+    let hidden = with(&[std::slice::from_ref(&screen), &behind].concat());
+    let off = check(&SceneOrder::new(&hidden), DVec3::ZERO, DVec3::Z, 1e-4);
+    assert!(off < 1e-9, "{off}");
+    // Not behind: refused as ever.
+    let seen = gradient(&SceneOrder::new(&with(&behind[..2])), DVec3::ZERO, DVec3::Z);
+    assert!(matches!(seen, Err(GradientError::InLine { .. })), "{seen:?}");
+    let seen = gradient(&SceneOrder::new(&with(&behind[2..])), DVec3::ZERO, DVec3::Z);
+    assert!(matches!(seen, Err(GradientError::EdgeOn { .. })), "{seen:?}");
+    // Partly behind: the stretch in which they are in line reaches out of the screen, or just does not.
+    for (low, is_hidden) in [(-0.9, false), (-0.45, true)] {
+        let long = [rectangle([0.0, 0.4], [2.0 * low, 0.3], 2.0), rectangle([-0.4, 0.0], [3.0 * low, 0.4], 3.0)];
+        let order = SceneOrder::new(&with(&[std::slice::from_ref(&screen), &long].concat()));
+        let found = gradient(&order, DVec3::ZERO, DVec3::Z);
+        assert_eq!(found.is_ok(), is_hidden, "{found:?}");
+    }
+}
+
+#[test]
+fn a_side_may_be_of_several_lines() {
+    // Two screens, one behind the other, whose edges are on one plane through the eye and touch there: each part moves by its own distance.
+    let lamp = rectangle([-3.0, 3.0], [-3.0, 3.0], 4.0);
+    let near = [[0.0, -1.0, 1.0], [0.0, 0.0, 1.0], [-1.0, -0.5, 1.0]].map(DVec3::from).to_vec();
+    for far in [2.0, 3.0] {
+        // Its lower edge is hidden.
+        let other = [[0.0, 0.0], [0.0, 0.5], [-0.8, 0.5], [-0.8, -0.6]].map(|[x, y]| DVec3::new(x, y, 1.0) * far);
+        let faces = [lamp.clone(), near.clone(), other.to_vec()];
+        let order = SceneOrder::new(&scene(&faces, |k| if k == 0 { 1.0 } else { 0.0 }));
+        let found = gradient(&order, DVec3::ZERO, DVec3::Z).expect("a derivative");
+        // Where the two touch the change is of second order on both sides, with different factors: a difference is off by as much as its step.
+        let expected = difference(|t| irradiance(&order, DVec3::X * t, DVec3::Z), 1e-6);
+        assert!((found.by_position[0].x - expected).abs() < 1e-5, "{found:?} {expected}");
+    }
+}
+
 #[test]
 fn known_gradients() {
     // A square of half side s above, parallel: E = 4 L t atan(t) ... with t = s / sqrt(s^2 + h^2), from its middle.

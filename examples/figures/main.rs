@@ -3,6 +3,8 @@
 
 mod fragments;
 mod receiver;
+mod shop;
+mod studio;
 mod table;
 mod tree;
 
@@ -12,8 +14,8 @@ use std::path::{Path, PathBuf};
 /// Where a figure is written, by its name.
 type Figure = fn(&Path) -> Result<(), Box<dyn Error>>;
 
-const FIGURES: [(&str, Figure); 3] =
-    [("fragments", fragments::draw), ("tree", tree::draw), ("receiver", receiver::draw)];
+const FIGURES: [(&str, Figure); 4] =
+    [("fragments", fragments::draw), ("tree", tree::draw), ("receiver", receiver::draw), ("studio", studio::write)];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/images"));

@@ -15,6 +15,16 @@ pub enum BrdfError {
     /// A roughness is too small or not a number.
     #[error("a roughness has to be from 0.0001 to 10, not {0}")]
     BadRoughness(f64),
+    /// A parameter that may be 0 is too large, negative or not a number.
+    #[error("{what} has to be from 0 to {most}, not {value}")]
+    OutOfRange {
+        /// What it is.
+        what: &'static str,
+        /// The largest that it may be.
+        most: f64,
+        /// What was given.
+        value: f64,
+    },
     /// A refractive index is not a positive number, or an absorption is negative.
     #[error("a refractive index has to be from 0.01 to 100, and an absorption from 0 to 100, not {0}")]
     BadIndex(DVec3),
@@ -76,6 +86,11 @@ pub enum BrdfError {
 pub(super) fn reflectance(value: DVec3) -> Result<DVec3, BrdfError> {
     let is_good = value.cmpge(DVec3::ZERO).all() && value.cmple(DVec3::ONE).all();
     if is_good { Ok(value) } else { Err(BrdfError::BadReflectance(value)) }
+}
+
+/// A number from 0 to a largest one.
+pub(super) fn within(what: &'static str, most: f64, value: f64) -> Result<f64, BrdfError> {
+    if (0.0..=most).contains(&value) { Ok(value) } else { Err(BrdfError::OutOfRange { what, most, value }) }
 }
 
 /// An exponent that is one.

@@ -27,6 +27,9 @@ pub enum Form<'a> {
         weight: DVec3,
         /// The integral over all directions above the surface of the difference to what it stands for, in size.
         distance: DVec3,
+        /// The least and the largest value of what it stands for, BRDF times cosine, over a convex polygon above the horizon with those unit corners: what a small
+        /// polygon off the lobe reflects is between the two times its solid angle, which tells more than the distance.
+        range: Box<Range<'a>>,
     },
     /// A sum of BRDFs, each in its own form.
     Sum(&'a [Box<dyn Brdf>]),
@@ -40,6 +43,9 @@ pub enum Form<'a> {
         smoothness: Smoothness,
     },
 }
+
+/// The least and the largest value of a function over a convex polygon of those unit corners.
+pub type Range<'a> = dyn Fn(&[DVec3]) -> [DVec3; 2] + 'a;
 
 /// `weight` max(0, axis.u)^power: a lobe of a Phong model, or with power 0 a matt surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -59,7 +59,7 @@ pub use ashikhmin::AshikhminShirley;
 pub use blinn::Blinn;
 pub use emission::{Emission, emitted, emitted_by_both_sides};
 pub use error::BrdfError;
-pub use form::{Form, Lobe};
+pub use form::{Form, Lobe, Range};
 pub use fresnel::Fresnel;
 pub use ggx::Ggx;
 pub use lafortune::Lafortune;

@@ -1,6 +1,6 @@
 //! Rough matt surfaces.
 
-use super::error::reflectance;
+use super::error::{reflectance, within};
 use super::{Brdf, BrdfError, Form, RgbEstimate, are_above};
 use crate::integral::Smoothness;
 use glam::DVec3;
@@ -22,9 +22,7 @@ impl OrenNayar {
     /// # Errors
     /// If rho is not from 0 to 1 or sigma not from 0 to 10.
     pub fn new(rho: DVec3, sigma: f64) -> Result<Self, BrdfError> {
-        if !(0.0..=10.0).contains(&sigma) {
-            return Err(BrdfError::BadRoughness(sigma));
-        }
+        let sigma = within("the deviation of slopes", 10.0, sigma)?;
         let square = sigma * sigma;
         let (a, b) = (1.0 - 0.5 * square / (square + 0.33), 0.45 * square / (square + 0.09));
         Ok(Self { reflectance: reflectance(rho)?, a, b })

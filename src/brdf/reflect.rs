@@ -1,10 +1,10 @@
 //! Integrals of BRDF times cosine times radiance over convex spherical polygons, each form in its own way.
 
 use super::seen::Seen;
-use super::{Form, Lobe, RgbEstimate};
+use super::{Form, Lobe, Range, RgbEstimate};
 use crate::integral::{
-    Cubature, CubatureOptions, Harmonics, Peak, Receiver, Smoothness, Weight, ZonalSum, clip, double_axis_moment,
-    form_factor, perimeter, unit_outline,
+    Cap, Cubature, CubatureOptions, Harmonics, Peak, Receiver, Smoothness, Weight, ZonalSum, clip, double_axis_moment,
+    form_factor, perimeter, solid_angle, unit_outline,
 };
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -49,19 +49,6 @@ impl Lit {
     pub(super) fn new(boundary: &[DVec3], radiance: DVec3) -> Option<Self> {
         Some(Self { outline: above_horizon(boundary)?, radiance })
     }
-
-    /// No direction of it has a larger cosine to an axis.
-    fn largest_cosine(&self, axis: DVec3) -> f64 {
-        let Some(centre) = self.outline.iter().sum::<DVec3>().try_normalize() else { return 1.0 };
-        let reach = self.outline.iter().fold(1.0_f64, |reach, v| reach.min(v.dot(centre)));
-        let off = axis.dot(centre);
-        if reach <= 0.0 || off >= reach {
-            return 1.0;
-        }
-        // The cosine of the difference of the two angles, and some rounding.
-        let sine = |cosine: f64| (1.0 - cosine * cosine).max(0.0).sqrt();
-        off * reach + sine(off) * sine(reach) + 1e-12
-    }
 }
 
 /// All that light comes from.
@@ -88,8 +75,8 @@ pub(super) fn reflect(
             sum
         }
         Form::Harmonics(series) => of_harmonics(&series, surroundings.lit, options),
-        Form::Transformed { inverse, weight, distance } => {
-            of_transformed_cosine(inverse, weight, distance, surroundings.lit)
+        Form::Transformed { inverse, weight, distance, range } => {
+            of_transformed_cosine(inverse, weight, (distance, &*range), surroundings.lit)
         }
         Form::Dirac { direction, reflectance } => (surroundings.from)(direction) * reflectance,
         Form::Sum(parts) => {
@@ -185,7 +172,8 @@ fn of_lobe(lobe: &Lobe, lit: &[Lit], options: CubatureOptions) -> RgbEstimate {
             (PI * factor, error)
         } else {
             // Of the lobe's tail a bound is enough.
-            let bound = TAU * part.largest_cosine(lobe.axis).max(0.0).powi(i32::from(lobe.power));
+            let [_, largest] = Cap::around(&part.outline).cosines(lobe.axis);
+            let bound = TAU * largest.max(0.0).powi(i32::from(lobe.power));
             if bound < NOTHING {
                 (0.0, bound)
             } else {
@@ -229,12 +217,18 @@ fn of_harmonics(series: &Harmonics, lit: &[Lit], options: CubatureOptions) -> Rg
 
 /// By the form factors of transformed polygons (Heitz, Dupuy, Hill and Neubelt, "Real-time polygonal-light shading with linearly transformed cosines", 2016).
 ///
-/// Polygons do not overlap, so the distance to what the cosine stands for counts once, with the brightest of them.
-fn of_transformed_cosine(inverse: DMat3, weight: DVec3, distance: DVec3, lit: &[Lit]) -> RgbEstimate {
+/// Polygons do not overlap, so the distance to what the cosine stands for counts once, with the brightest of them. Or what each of them reflects is bounded by
+/// the range of the true values over it, if that tells more.
+fn of_transformed_cosine(
+    inverse: DMat3,
+    weight: DVec3,
+    (distance, range): (DVec3, &Range<'_>),
+    lit: &[Lit],
+) -> RgbEstimate {
     // By how much a turn of a direction, such as a corner's rounding, may grow.
     let growth = frobenius(inverse) * frobenius(inverse.inverse());
     let mut sum = RgbEstimate::default();
-    let mut brightest = DVec3::ZERO;
+    let (mut brightest, mut one_by_one) = (DVec3::ZERO, DVec3::ZERO);
     for part in lit {
         let moved: Vec<DVec3> = part.outline.iter().map(|&corner| inverse * corner).collect();
         let outline = clip(&unit_outline(&moved), DVec3::Z);
@@ -243,8 +237,12 @@ fn of_transformed_cosine(inverse: DMat3, weight: DVec3, distance: DVec3, lit: &[
             RgbEstimate { value: DVec3::splat(form_factor(&outline, DVec3::Z)), error: DVec3::splat(rounding) };
         sum += factor * (weight * part.radiance);
         brightest = brightest.max(part.radiance);
+        let omega = solid_angle(&part.outline);
+        let [least, most] = range(&part.outline).map(|value| value * omega);
+        let value = weight * factor.value;
+        one_by_one += (most - value).max(value - least) * part.radiance;
     }
-    sum.error += distance * brightest;
+    sum.error += (distance * brightest).min(one_by_one);
     sum
 }
 

@@ -4,7 +4,7 @@ use super::emission::Emission;
 use super::frame::Frame;
 use super::reflect::{Lit, above_horizon};
 use super::{ReflectError, Sky};
-use crate::contour::{Cell, ContourImage};
+use crate::contour::{Cell, ContourImage, Joiner};
 use crate::integral::{Linear, clip};
 use glam::DVec3;
 
@@ -20,14 +20,13 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    /// What an image shows.
+    /// What an image shows. Cells that show the same are joined to convex polygons: fewer have to be integrated over.
     pub(super) fn new<'e>(
         image: &ContourImage,
         frame: Frame,
         emission: impl Fn(Cell<'_>) -> Emission<'e>,
     ) -> Result<Self, ReflectError> {
-        let mut seen = Self::default();
-        let mut boundary = Vec::new();
+        let mut joiner = Joiner::new(image);
         for cell in image.cells() {
             let emission = emission(cell);
             if let Emission::Constant(radiance) = emission {
@@ -36,14 +35,21 @@ impl Seen {
                     continue;
                 }
             }
+            // What is linear is so on one piece.
+            let piece = if matches!(emission, Emission::Vertices(_)) { cell.piece() } else { None };
+            joiner.add(cell, (emission, piece));
+        }
+        let mut seen = Self::default();
+        let mut boundary = Vec::new();
+        for polygon in joiner.into_polygons() {
             boundary.clear();
-            boundary.extend(cell.boundary().map(|corner| frame.to_local(corner)));
-            seen.add(cell, &boundary, &emission, frame)?;
+            boundary.extend(polygon.boundary().map(|corner| frame.to_local(corner)));
+            seen.add(polygon.cell, &boundary, &polygon.label.0, frame)?;
         }
         Ok(seen)
     }
 
-    /// Adds what a cell shows, with its boundary in the surface's frame.
+    /// Adds what cells show, of which one is given, with the boundary of them all in the surface's frame.
     fn add(
         &mut self,
         cell: Cell<'_>,

@@ -1,5 +1,7 @@
 //! What holds of every model: reciprocity, energy, white furnaces; values that are known.
 
+mod estimates;
+
 use super::reflect::{Lit, Surroundings, reflect, white_furnace};
 use super::{
     AshikhminShirley, Blinn, Brdf, BrdfError, Form, Fresnel, Ggx, Lafortune, Lambert, MetallicRoughness, Mirror,
@@ -285,7 +287,7 @@ fn materials_reflect_as_their_files_say() {
     let by_sum = DVec3::new(1.0, 1.5, 1.0);
     let [matt, gloss] = [bright.diffuse, bright.specular].map(|colour| DVec3::from(colour) / by_sum);
     assert!((of(&bright) - expected(matt, gloss)).length() < 1e-15 && bright.reflects_too_much());
-    // By the equations of glTF's appendix B.3, written out.
+    // By the equations of glTF's appendix B.3.5, written out, with the height-correlated masking of B.3.6.1.
     let (base_colour, metallic, roughness) = ([0.9, 0.5, 0.1], 0.3, 0.6_f64);
     let gltf = scene::MetallicRoughness { base_colour, metallic, roughness };
     let gltf = Material { metallic_roughness: Some(gltf), ..Material::new("paint") };
@@ -321,7 +323,12 @@ fn parameters_that_make_no_sense_are_refused() {
     assert!(matches!(Blinn::new(RHO, f64::INFINITY), Err(BrdfError::BadExponent(_))));
     assert_eq!(Ward::new(RHO, 0.1, 0.0), Err(BrdfError::BadRoughness(0.0)));
     assert!(matches!(Ggx::new(Fresnel::ALL, f64::NAN, 0.1), Err(BrdfError::BadRoughness(_))));
-    assert!(matches!(OrenNayar::new(RHO, -0.1), Err(BrdfError::BadRoughness(_))));
+    assert!(matches!(OrenNayar::new(RHO, -0.1), Err(BrdfError::OutOfRange { .. })));
+    let shown = |error: Option<BrdfError>| error.map(|error| error.to_string());
+    let metallic = shown(MetallicRoughness::new(RHO, 2.0, 0.5).err());
+    assert_eq!(metallic.as_deref(), Some("the metallic part has to be from 0 to 1, not 2"));
+    let rough = shown(MetallicRoughness::new(RHO, 0.5, f64::NAN).err());
+    assert_eq!(rough.as_deref(), Some("a roughness of glTF has to be from 0 to 1, not NaN"));
     assert!(matches!(Lafortune::new(RHO, DVec3::splat(2.0), 10.0), Err(BrdfError::NotConserving(_))));
     assert!(matches!(Lafortune::new(RHO, nan, 10.0), Err(BrdfError::BadScale(_))));
     assert!(AshikhminShirley::new(-RHO, RHO, 1.0, 1.0).is_err());

@@ -14,6 +14,7 @@ mod frustum;
 #[cfg(feature = "geo")]
 mod geo;
 mod image;
+mod joined;
 mod locate;
 mod neighbours;
 mod order;
@@ -40,6 +41,7 @@ pub use frustum::{Frustum, FrustumError};
 #[cfg(feature = "geo")]
 pub use geo::GeoRegion;
 pub use image::{Cell, CellId, ContourImage, TreeArc};
+pub(crate) use joined::Joiner;
 pub use locate::{Location, Region};
 pub use neighbours::Neighbour;
 pub use order::SceneOrder;

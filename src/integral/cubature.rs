@@ -93,7 +93,8 @@ pub struct Integral {
 /// evaluations and may be told too well: clip it first, or tell [`Cubature`] of it.
 ///
 /// In 10,000 random cases of lobes of exponents 1 to 2048 on polygons of 2 pi to 1e-6 steradians, the true error was
-/// below the estimate in more than 99%; it is no bound. NaN if `f` is NaN somewhere. 16 evaluations a triangle.
+/// below the estimate in more than 99%; it is no bound. It leaves out that corners are rounded: 2e-16 times the polygon's perimeter and the value there, 1e-13
+/// of the integral for polygons of 1e-3. NaN if `f` is NaN somewhere. 16 evaluations a triangle.
 ///
 /// ```
 /// use glam::DVec3;

@@ -12,13 +12,15 @@
 //! direction, and arcs along the horizon, where n.u = 0, do not count, whatever they move like.
 //!
 //! There is no derivative where two lines of the scene lie on one arc (on one side the one ends the region, on the other the other), or where the eye
-//! is in the plane of a polygon, which is about to appear.
+//! is in the plane of a polygon, which is about to appear. Neither matters where it is hidden: where its points are exactly behind the planes of all polygons that are seen
+//! along it, on both sides. They are still so a little farther on.
 
+mod cells;
 mod lines;
 
 use super::flux::double_flux;
 use super::unit_outline;
-use crate::contour::{ContourImage, RegionLoop, RegionSide, VisibleRegion};
+use crate::contour::{ContourImage, RegionLoop, VisibleRegion};
 use crate::scene::{PolygonId, VertexId};
 use glam::DVec3;
 use lines::Lines;
@@ -41,7 +43,7 @@ pub enum GradientError {
     /// The image is of a sphere or of a camera's directions: there is no surface.
     #[error("there is no irradiance without a surface: take a view of a hemisphere")]
     NoNormal,
-    /// Seen from the eye two edges on different lines lie one behind the other. They may be hidden.
+    /// Seen from the eye two edges on different lines lie one behind the other, where neither is certain to be hidden.
     #[error(
         "the edges {}-{} and {}-{} are in line seen from the eye: irradiance may have no derivative there; move the eye a little",
         edges[0][0], edges[0][1], edges[1][0], edges[1][1]
@@ -50,7 +52,7 @@ pub enum GradientError {
         /// The edges by their vertices.
         edges: [[VertexId; 2]; 2],
     },
-    /// The eye is in the plane of a polygon that reaches above the horizon. It may be hidden.
+    /// The eye is in the plane of a polygon that reaches above the horizon and is not certain to be hidden.
     #[error(
         "the eye is in the plane of polygon {polygon}: irradiance may have no derivative there; move the eye a little"
     )]
@@ -115,8 +117,8 @@ impl ContourImage {
             }
             let mut region_motion = DVec3::ZERO;
             for side in region.loops().iter().flat_map(RegionLoop::sides) {
-                if let Some(line) = lines.behind(side, region.polygon())? {
-                    region_motion += line.growth(side, normal);
+                for part in lines.behind(side, region.polygon())? {
+                    region_motion += part.line.growth(side.from, part.angles, normal);
                 }
             }
             for k in 0..3 {
@@ -140,15 +142,17 @@ struct Line {
 }
 
 impl Line {
-    /// The gradient by position of the integral of n.u over the region, as far as this side moves.
-    fn growth(&self, side: &RegionSide, normal: DVec3) -> DVec3 {
+    /// The gradient by position of the integral of n.u over the region, as far as a part of a side moves: between two angles from where the side starts.
+    fn growth(&self, zero: DVec3, [from, to]: [f64; 2], normal: DVec3) -> DVec3 {
         let size = self.inward.length();
         let inward = self.inward / size;
         // The region is to the left.
-        let (start, ahead) = (side.from, inward.cross(side.from));
-        let (sin, cos) = side.length.sin_cos();
+        let aside = inward.cross(zero);
+        let (start, ahead) = (zero * from.cos() + aside * from.sin(), aside * from.cos() - zero * from.sin());
+        let length = to - from;
+        let (sin, cos) = length.sin_cos();
         let [start_square, both, ahead_square] =
-            [0.5 * (side.length + sin * cos), 0.5 * sin * sin, 0.5 * (side.length - sin * cos)];
+            [0.5 * (length + sin * cos), 0.5 * sin * sin, 0.5 * (length - sin * cos)];
         let [p, t] = [normal.dot(start), normal.dot(ahead)];
         // The integral of (n.u) u over the arc.
         let moment = start * (p * start_square + t * both) + ahead * (p * both + t * ahead_square);

@@ -7,6 +7,7 @@
 
 #[cfg(test)]
 pub(crate) mod brute;
+mod cap;
 mod clip;
 mod cubature;
 mod flux;
@@ -15,6 +16,8 @@ mod gradient;
 mod harmonics;
 mod moments;
 mod precise;
+#[cfg(test)]
+pub(crate) mod random;
 mod receiver;
 mod solid_angle;
 mod sums;
@@ -26,6 +29,7 @@ mod zonal_sum;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use cap::Cap;
 pub(crate) use clip::{clip, perimeter, unit_outline};
 pub use cubature::{Cubature, CubatureOptions, Integral, Peak, Smoothness, integrate};
 pub(crate) use cubature::{Linear, Weight};

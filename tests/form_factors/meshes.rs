@@ -3,7 +3,7 @@
 use super::cases::{cuboid, rectangle, scene_of};
 use super::exchange;
 use glam::DVec3;
-use nusselt::factors::PatchPlan;
+use nusselt::factors::{PatchPlan, mesh_scene};
 use nusselt::scene::PolygonId;
 
 #[test]
@@ -26,6 +26,29 @@ fn patches_add_up_to_their_polygons() {
             );
             // No patch is larger than a square of that edge.
             assert!(count as f64 >= polygon.area / (longest_edge * longest_edge), "{k} {longest_edge}: {count}");
+        }
+    }
+}
+
+/// Patch by patch, near the origin and far away, where the exchange computes elsewhere.
+#[test]
+fn scenes_of_patches_are_those_of_the_mesh() {
+    for shift in [0.0, 1e7] {
+        let l = [[0., 0., 0.], [2., 0., 0.5], [2., 1., 0.75], [1., 1., 0.5], [1., 2., 0.75], [0., 2., 0.5]];
+        let pentagon = [[5., 5., 0.], [6., 5., 0.], [6.5, 6., 0.], [5.5, 7., 0.], [4.5, 6., 0.]];
+        let moved = |polygon: &[[f64; 3]]| polygon.iter().map(|p| p.map(|x| x + shift)).collect::<Vec<_>>();
+        let scene = scene_of(&[moved(&l), moved(&pentagon)]);
+        for longest_edge in [3.0, 0.7, 0.11] {
+            let mesh = exchange(&scene, PatchPlan::Mesh { longest_edge }, 1e-2);
+            let (patches, of) = mesh_scene(&scene, longest_edge).expect("a mesh");
+            assert_eq!(patches.polygon_count(), mesh.patches().len());
+            assert!(of.iter().eq(mesh.patches().iter().map(|patch| &patch.polygon)));
+            for (polygon, patch) in patches.polygons().zip(mesh.patches()) {
+                let shape = patch.shape.as_ref().expect("an area");
+                let [ring] = &shape.pieces[..] else { panic!("one piece") };
+                let corners: Vec<DVec3> = polygon.rings()[0].iter().map(|&vertex| patches.vertex(vertex)).collect();
+                assert_eq!(corners, *ring);
+            }
         }
     }
 }

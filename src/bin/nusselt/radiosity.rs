@@ -124,11 +124,13 @@ impl Radiosity {
         let (patches, of) = self.mesh(&scene)?;
         let start = Instant::now();
         let options = ExchangeOptions { tolerance: self.tolerance, ..ExchangeOptions::default() };
-        let exchange = Exchange::new(&patches, PatchPlan::Polygons, options).map_err(|error| self.about(&error))?;
+        // The same patches as parts of whole polygons, of which there are fewer to see.
+        let plan = self.patch.map_or(PatchPlan::Polygons, |longest_edge| PatchPlan::Mesh { longest_edge });
+        let exchange = Exchange::new(&scene, plan, options).map_err(|error| self.about(&error))?;
         let order_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let options = SolverOptions { overshoot: self.overshoot, ..SolverOptions::default() };
-        let mut solver = Solver::new(&patches, &exchange, options).map_err(|error| self.about(&error))?;
+        let mut solver = Solver::new(&scene, &exchange, options).map_err(|error| self.about(&error))?;
         let key = StateKey::new(&patches, self.tolerance);
         self.take_up(&key, &mut solver)?;
         self.solve(&key, &mut solver, common)?;

@@ -1,5 +1,6 @@
 //! Linearly transformed cosines: a fast approximation of microfacets.
 
+mod range;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -16,8 +17,9 @@ use std::f64::consts::PI;
 /// what it costs with a matt surface.
 ///
 /// *Never a reference.* It is no BRDF of its own either: it is not reciprocal, and grows without limit at the horizon. The error that is returned with a reflected
-/// radiance is the distance to the true model, the integral of the difference's size over all directions, times the brightest radiance: the two differ by
-/// no more, whatever the polygons. It was measured when the table was fitted, as the largest of 25 places about each entry; see `docs/brdf.md`.
+/// radiance is the smaller of two. One is the distance to the true model, the integral of the difference's size over all directions, times the brightest radiance: the two differ by
+/// no more, whatever the polygons. It was measured when the table was fitted, as the largest of 25 places about each entry; see `docs/brdf.md`. The other is
+/// how far the value can be from what the least and the largest values of the true model over each polygon allow: a bound that small lamps off the lobe are better off with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GgxLtc {
     at_normal: DVec3,
@@ -54,7 +56,8 @@ impl Brdf for GgxLtc {
 
     fn form(&self, outgoing: DVec3) -> Form<'_> {
         let (inverse, weight, distance) = self.transformed(outgoing);
-        Form::Transformed { inverse, weight, distance }
+        let range = Box::new(move |corners: &[DVec3]| range::of_ggx(self.at_normal, self.roughness, outgoing, corners));
+        Form::Transformed { inverse, weight, distance, range }
     }
 
     /// False.

@@ -1,5 +1,6 @@
 //! The lines of a scene behind the sides of visible regions.
 
+use super::cells::{Cells, Stretch};
 use super::{GradientError, Line};
 use crate::bsp::LineId;
 use crate::contour::{ContourImage, Horizon, RegionSide, Splitter};
@@ -16,6 +17,19 @@ pub(super) struct Lines<'a> {
     horizon: exact::Splitter,
     /// Ascending by key.
     edges: Vec<Edge>,
+    cells: Cells,
+}
+
+/// An edge, and how its great circle is turned.
+type Turned = (Edge, CircleRelation);
+
+/// From an angle to another one, and the edge that is seen there.
+type Along = ([f64; 2], Option<Turned>);
+
+/// A part of a side of a region, from an angle to another one counted from the side's start, and the line behind it.
+pub(super) struct Part {
+    pub(super) line: Line,
+    pub(super) angles: [f64; 2],
 }
 
 /// An edge that ends a polygon, or folds it, and that is on the horizon at most with an end.
@@ -51,7 +65,7 @@ impl<'a> Lines<'a> {
             }
         };
         let kernel = Kernel::new(scene.vertices().iter().copied(), image.viewpoint().eye());
-        let mut lines = Self { image, kernel, horizon, edges: Vec::new() };
+        let mut lines = Self { image, kernel, horizon, edges: Vec::new(), cells: Cells::default() };
         let ends = lines.ends_of_polygons();
         let edges = ends.into_iter().filter_map(|id| lines.edge(id, normal));
         lines.edges = edges.collect();
@@ -97,15 +111,25 @@ impl<'a> Lines<'a> {
         self.kernel.compare_circles(circle, &self.horizon) != CircleRelation::Different
     }
 
-    /// Refuses eyes in the planes of polygons that reach above the horizon.
+    /// Refuses eyes in the planes of polygons that reach above the horizon, unless they are hidden.
     pub(super) fn check_edge_on(&mut self, normal: DVec3) -> Result<(), GradientError> {
-        let scene = self.image.scene();
-        let eye = self.image.viewpoint().eye();
+        let image = self.image;
+        let scene = image.scene();
+        let eye = image.viewpoint().eye();
         for piece in scene.pieces() {
-            if self.image.skeleton().position_side(piece.plane_id(), eye) == Sign::Zero
-                && piece.points().any(|p| normal.dot(p - eye) > 0.0)
-                && !self.is_horizon(&exact::Splitter::Parallel(scene.resolve_plane(piece.plane())))
+            if image.skeleton().position_side(piece.plane_id(), eye) != Sign::Zero
+                || piece.points().all(|p| normal.dot(p - eye) <= 0.0)
             {
+                continue;
+            }
+            let circle = exact::Splitter::Parallel(scene.resolve_plane(piece.plane()));
+            if self.is_horizon(&circle) {
+                continue;
+            }
+            let points: Vec<DVec3> = piece.points().collect();
+            let circle = rough_normal(&circle, eye).normalize_or_zero();
+            let stretch = Stretch::around(circle, points.iter().map(|&p| p - eye));
+            if !self.cells.hide(image, &points, &stretch) {
                 return Err(GradientError::EdgeOn { polygon: piece.polygon() });
             }
         }
@@ -119,7 +143,7 @@ impl<'a> Lines<'a> {
                 || self.kernel.compare_circles(&circles[0], &circles[1]) != CircleRelation::Different)
     }
 
-    /// Refuses eyes from which edges on different lines are in line: one may come out from behind the other, be it visible now or not.
+    /// Refuses eyes from which edges on different lines are in line, unless one is hidden where they are: else it may come out from behind the other.
     pub(super) fn check_in_line(&mut self) -> Result<(), GradientError> {
         let edges = std::mem::take(&mut self.edges);
         for near in edges.chunk_by(|a, b| b.key - a.key < NEAR).filter(|near| near.len() > 1) {
@@ -133,7 +157,7 @@ impl<'a> Lines<'a> {
                 }
             }
             for group in groups {
-                if let Some(pair) = overlapping(&group) {
+                if let Some(pair) = self.seen_in_line(&group) {
                     let edges = pair.map(|edge| self.image.scene().edges()[edge.id.index()]);
                     return Err(GradientError::InLine { edges });
                 }
@@ -143,102 +167,146 @@ impl<'a> Lines<'a> {
         Ok(())
     }
 
-    /// The line behind a side; `None` if it does not move, or where that does not count.
-    pub(super) fn behind(
-        &mut self,
-        side: &RegionSide,
-        polygon: Option<PolygonId>,
-    ) -> Result<Option<Line>, GradientError> {
-        let eye = self.image.viewpoint().eye();
-        let circle = self.image.scene().resolve_splitter(side.splitter);
-        if self.is_horizon(&circle) {
-            return Ok(None);
+    /// A pair of edges of one great circle, on different lines, that overlap where neither is hidden.
+    fn seen_in_line<'e>(&mut self, group: &[&'e Edge]) -> Option<[&'e Edge; 2]> {
+        let normal = group[0].normal;
+        let spans: Vec<(f64, f64)> = group.iter().map(|edge| edge.span(normal, group[0].ends[0])).collect();
+        // Those that are hidden all along are out; few are left then.
+        let mut seen = Vec::new();
+        for k in 0..group.len() {
+            let is_in_line = |j: usize| group[j].line != group[k].line && !overlaps(spans[k], spans[j]).is_empty();
+            if (0..group.len()).any(is_in_line) && !self.is_hidden(group[k], normal, group[0].ends[0], spans[k]) {
+                seen.push(k);
+            }
         }
-        let (normal, along, relation) = match (self.edge_along(side, &circle), circle) {
-            (Some((edge, relation)), _) => {
-                let exact::Splitter::Edge([a, b]) = self.splitter(&edge) else { return Ok(None) };
-                ((a - eye).cross(b - a), b - a, relation)
-            }
-            (None, exact::Splitter::Edge([a, b])) => ((a - eye).cross(b - a), b - a, CircleRelation::Same),
-            // h2 N1 - h1 N2 changes by (N2.dr) N1 - (N1.dr) N2 = (N2 x N1) x dr.
-            (None, exact::Splitter::Crease(planes)) => {
-                let [n1, n2] = planes.map(plane_normal);
-                (rough_normal(&circle, eye), n2.cross(n1), CircleRelation::Same)
-            }
-            (None, _) => return Err(GradientError::Unknown { polygon }),
-        };
-        let same = if relation == CircleRelation::Opposite { -1.0 } else { 1.0 };
-        let sign = if side.inside == Sign::Negative { -same } else { same };
-        Ok(Some(Line { inward: normal * sign, along: along * sign }))
-    }
-
-    /// An edge on the great circle of a side that overlaps it, and how its great circle is turned. Of those in line all are on one line.
-    fn edge_along(&mut self, side: &RegionSide, circle: &exact::Splitter) -> Option<(Edge, CircleRelation)> {
-        // A great circle may have the name of an axis or of another edge.
-        let normal = rough_normal(circle, self.image.viewpoint().eye()).normalize_or_zero();
-        let key = normal.dot(AXIS).abs();
-        let first = self.edges.partition_point(|edge| edge.key < key - NEAR);
-        let inward = if side.inside == Sign::Negative { -normal } else { normal };
-        let ahead = inward.cross(side.from);
-        for k in first..self.edges.len() {
-            let edge = self.edges[k];
-            if edge.key > key + NEAR {
-                break;
-            }
-            if edge.normal.cross(normal).length() < NEAR && lies_over(&edge, side.from, ahead, side.length) {
-                let relation = self.kernel.compare_circles(circle, &self.splitter(&edge));
-                if relation != CircleRelation::Different {
-                    return Some((edge, relation));
+        for (n, &k) in seen.iter().enumerate() {
+            for &j in seen[..n].iter().filter(|&&j| group[j].line != group[k].line) {
+                for both in overlaps(spans[k], spans[j]) {
+                    let [one, other] = [k, j].map(|k| self.is_hidden(group[k], normal, group[0].ends[0], both));
+                    if !one && !other {
+                        return Some([group[j], group[k]]);
+                    }
                 }
             }
         }
         None
     }
-}
 
-/// A pair of edges of one great circle, on different lines, that overlap.
-fn overlapping<'e>(group: &[&'e Edge]) -> Option<[&'e Edge; 2]> {
-    let normal = group[0].normal;
-    let (x, y) = (group[0].ends[0], normal.cross(group[0].ends[0]));
-    let angle = |p: DVec3| p.dot(y).atan2(p.dot(x));
-    let mut spans: Vec<(f64, f64, &Edge)> = Vec::new();
-    for edge in group {
-        let (start, length) = span(edge.ends.map(angle));
-        // Twice around, so that what lies over the seam meets all that it should.
-        spans.extend([0.0, TAU].map(|turn| (start + turn, start + turn + length, *edge)));
+    /// True if an edge is hidden along a span of its great circle, which is counted about a normal from a unit direction.
+    fn is_hidden(&mut self, edge: &Edge, normal: DVec3, zero: DVec3, (start, length): (f64, f64)) -> bool {
+        let [from, to] = [start, start + length].map(|angle| zero * angle.cos() + normal.cross(zero) * angle.sin());
+        let scene = self.image.scene();
+        let points = scene.edges()[edge.id.index()].map(|v| scene.vertex(v));
+        self.cells.hide(self.image, &points, &Stretch::between(normal, from, to))
     }
-    spans.sort_by(|a, b| a.0.total_cmp(&b.0));
-    // The one that reaches farthest so far, and the one on another line that does.
-    let mut far: [Option<(f64, &Edge)>; 2] = [None; 2];
-    for (start, end, edge) in spans {
-        for (reach, other) in far.into_iter().flatten() {
-            if other.line != edge.line && reach.min(end) - start > SHORTEST {
-                return Some([other, edge]);
-            }
+
+    /// The lines behind a side, which may be several one after the other; none if it does not move, or where that does not count.
+    pub(super) fn behind(&mut self, side: &RegionSide, polygon: Option<PolygonId>) -> Result<Vec<Part>, GradientError> {
+        let eye = self.image.viewpoint().eye();
+        let circle = self.image.scene().resolve_splitter(side.splitter);
+        if self.is_horizon(&circle) {
+            return Ok(Vec::new());
         }
-        match far[0] {
-            Some((reach, other)) if reach >= end => {
-                if other.line != edge.line && far[1].is_none_or(|(reach, _)| reach < end) {
-                    far[1] = Some((end, edge));
+        // Where no edge is, it is what the great circle is named for.
+        let rest = match circle {
+            exact::Splitter::Edge([a, b]) => Some(((a - eye).cross(b - a), b - a)),
+            // h2 N1 - h1 N2 changes by (N2.dr) N1 - (N1.dr) N2 = (N2 x N1) x dr.
+            exact::Splitter::Crease(planes) => {
+                let [n1, n2] = planes.map(plane_normal);
+                Some((rough_normal(&circle, eye), n2.cross(n1)))
+            }
+            _ => None,
+        };
+        let sign = if side.inside == Sign::Negative { -1.0 } else { 1.0 };
+        let line = |(normal, along): (DVec3, DVec3), sign: f64| Line { inward: normal * sign, along: along * sign };
+        let mut parts = Vec::new();
+        for (angles, edge) in self.edges_along(side, &circle)? {
+            let line = match edge {
+                None => line(rest.ok_or(GradientError::Unknown { polygon })?, sign),
+                Some((edge, relation)) => {
+                    let exact::Splitter::Edge([a, b]) = self.splitter(&edge) else { continue };
+                    let same = if relation == CircleRelation::Opposite { -sign } else { sign };
+                    line(((a - eye).cross(b - a), b - a), same)
+                }
+            };
+            parts.push(Part { line, angles });
+        }
+        Ok(parts)
+    }
+
+    /// A side cut where edges on its great circle begin and end, with the one that is seen along each part, if there is one, and how its great circle is turned.
+    fn edges_along(&mut self, side: &RegionSide, circle: &exact::Splitter) -> Result<Vec<Along>, GradientError> {
+        // A great circle may have the name of an axis or of another edge.
+        let normal = rough_normal(circle, self.image.viewpoint().eye()).normalize_or_zero();
+        let key = normal.dot(AXIS).abs();
+        let inward = if side.inside == Sign::Negative { -normal } else { normal };
+        let whole = (0.0, side.length);
+        let first = self.edges.partition_point(|edge| edge.key < key - NEAR);
+        let mut along: Vec<(Turned, Vec<(f64, f64)>)> = Vec::new();
+        for k in first..self.edges.len() {
+            let edge = self.edges[k];
+            if edge.key > key + NEAR {
+                break;
+            }
+            if edge.normal.cross(normal).length() < NEAR {
+                let spans = overlaps(whole, edge.span(inward, side.from));
+                let relation = self.kernel.compare_circles(circle, &self.splitter(&edge));
+                if !spans.is_empty() && relation != CircleRelation::Different {
+                    along.push(((edge, relation), spans));
                 }
             }
-            Some((_, other)) => {
-                if other.line != edge.line {
-                    far[1] = far[0];
-                }
-                far[0] = Some((end, edge));
-            }
-            None => far[0] = Some((end, edge)),
         }
+        let ends =
+            along.iter().flat_map(|(_, spans)| spans.iter().flat_map(|&(start, length)| [start, start + length]));
+        let mut cuts: Vec<f64> = ends.chain([0.0, side.length]).collect();
+        cuts.sort_by(f64::total_cmp);
+        let mut parts: Vec<Along> = Vec::new();
+        for ends in cuts.windows(2) {
+            let [from, to] = [ends[0], ends[1]];
+            if to - from <= 0.0 {
+                continue;
+            }
+            let part = (from, to - from);
+            let middle = 0.5 * (from + to);
+            let covers =
+                |spans: &[(f64, f64)]| spans.iter().any(|&(start, length)| start < middle && middle < start + length);
+            let mut here: Vec<Turned> =
+                along.iter().filter(|(_, spans)| covers(spans)).map(|&(edge, _)| edge).collect();
+            // Of edges on different lines all but one are hidden, or are in line on a stretch that is nothing but rounding.
+            if part.1 > SHORTEST && here.iter().any(|(edge, _)| edge.line != here[0].0.line) {
+                here.retain(|(edge, _)| !self.is_hidden(edge, inward, side.from, part));
+                if let Some(&(other, _)) = here.iter().find(|(edge, _)| edge.line != here[0].0.line) {
+                    let edges = [here[0].0, other].map(|edge| self.image.scene().edges()[edge.id.index()]);
+                    return Err(GradientError::InLine { edges });
+                }
+            }
+            let edge = here.first().copied();
+            match parts.last_mut() {
+                Some((angles, known)) if known.map(|(edge, _)| edge.line) == edge.map(|(edge, _)| edge.line) => {
+                    angles[1] = to;
+                }
+                _ => parts.push(([from, to], edge)),
+            }
+        }
+        Ok(parts)
     }
-    None
 }
 
-/// True if an edge lies over more than a point of an arc on its great circle, of that length, that starts at a point and goes ahead from there.
-fn lies_over(edge: &Edge, from: DVec3, ahead: DVec3, length: f64) -> bool {
-    let place = |p: DVec3| p.dot(ahead).atan2(p.dot(from));
-    let (start, size) = span(edge.ends.map(place));
-    [-TAU, 0.0, TAU].iter().any(|turn| (start + size + turn).min(length) - (start + turn).max(0.0) > SHORTEST)
+impl Edge {
+    /// Where it starts, and its length, on its great circle, counted about a unit normal from a unit direction on it.
+    fn span(&self, normal: DVec3, zero: DVec3) -> (f64, f64) {
+        let ahead = normal.cross(zero);
+        span(self.ends.map(|p| p.dot(ahead).atan2(p.dot(zero))))
+    }
+}
+
+/// Where a span lies over more than a point of another one, in turns of the first.
+fn overlaps(one: (f64, f64), other: (f64, f64)) -> Vec<(f64, f64)> {
+    let turned = [-TAU, 0.0, TAU].map(|turn| {
+        let start = one.0.max(other.0 + turn);
+        (start, (one.0 + one.1).min(other.0 + turn + other.1) - start)
+    });
+    turned.into_iter().filter(|&(_, length)| length > SHORTEST).collect()
 }
 
 /// Where the shorter way between two angles starts, and its length.
