@@ -1,6 +1,6 @@
 //! The measured parts of docs/form-factors.md: `cargo run --release --example form_factors`, or only one of them: `-- validation`, `-- cities`, `-- speed`.
 //!
-//! `-- row box 1e-4 100` times so many rows of one scene (`empty`, `box`, or a number of blocks of a city), for profiles.
+//! `-- row box 1e-4 100` times so many rows of one scene, and `-- row box 1e-4 100 120` those from 100 to 119 (`empty`, `box`, or a number of blocks of a city), for profiles.
 
 #[path = "../../tests/form_factors/cases.rs"]
 mod cases;
@@ -26,10 +26,11 @@ const PARTS: [(&str, Part); 3] = [("validation", validation::part), ("cities", c
 fn main() -> Result<(), Box<dyn Error>> {
     let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/form-factors.md");
     let words: Vec<String> = std::env::args().skip(1).collect();
-    if let [row, scene, tolerance, rows] = &words[..]
-        && row == "row"
+    if let [row, scene, tolerance, ends @ ..] = &words[..]
+        && let ("row", [start @ .., end]) = (&row[..], ends)
     {
-        return speed::rows_of(scene, tolerance.parse()?, rows.parse()?);
+        let start = start.first().map_or(Ok(0), |start| start.parse())?;
+        return speed::rows_of(scene, tolerance.parse()?, start..end.parse()?);
     }
     if let Some(word) = words.iter().find(|word| PARTS.iter().all(|(name, _)| name != word)) {
         return Err(format!("there are validation, cities and speed, not {word}").into());

@@ -5,6 +5,7 @@ use nusselt::factors::{Exchange, ExchangeError, ExchangeOptions, PatchPlan};
 use nusselt::scene::Scene;
 use std::error::Error;
 use std::fmt::Write;
+use std::ops::Range;
 use std::time::Instant;
 
 fn scene(name: &str) -> Result<Scene, Box<dyn Error>> {
@@ -22,12 +23,12 @@ struct Run {
     raw: f64,
 }
 
-fn run(exchange: &Exchange, rows: usize, threads: usize) -> Result<Run, Box<dyn Error>> {
+fn run(exchange: &Exchange, rows: Range<usize>, threads: usize) -> Result<Run, Box<dyn Error>> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let (mut entries, mut raw) = (0, 0.0_f64);
     let start = Instant::now();
     pool.install(|| {
-        exchange.rows(0..rows, |row| {
+        exchange.rows(rows, |row| {
             entries += row.entries.len();
             raw = raw.max((row.closure_raw - 1.0).abs());
             Ok::<(), ExchangeError>(())
@@ -36,14 +37,15 @@ fn run(exchange: &Exchange, rows: usize, threads: usize) -> Result<Run, Box<dyn 
     Ok(Run { seconds: start.elapsed().as_secs_f64(), entries, raw })
 }
 
-/// The first rows of one scene, for profiles.
-pub(super) fn rows_of(name: &str, tolerance: f64, rows: usize) -> Result<(), Box<dyn Error>> {
+/// Some rows of one scene, for profiles.
+pub(super) fn rows_of(name: &str, tolerance: f64, rows: Range<usize>) -> Result<(), Box<dyn Error>> {
     let scene = scene(name)?;
     let options = ExchangeOptions { tolerance, ..ExchangeOptions::default() };
     let exchange = Exchange::new(&scene, PatchPlan::Polygons, options)?;
-    let rows = rows.min(exchange.patches().len());
+    let rows = rows.start..rows.end.min(exchange.patches().len());
+    let count = rows.len();
     let Run { seconds, entries, raw } = run(&exchange, rows, 1)?;
-    println!("{:.3} ms a row, {entries} entries, raw closure {raw:.1e}", seconds * 1e3 / rows as f64);
+    println!("{:.3} ms a row, {entries} entries, raw closure {raw:.1e}", seconds * 1e3 / count as f64);
     Ok(())
 }
 
@@ -68,7 +70,7 @@ pub(super) fn part() -> Result<String, Box<dyn Error>> {
         let (mut entries, mut raw) = (0, 0.0);
         for _ in 0..2 {
             for (threads, best) in [1, 2].into_iter().zip(&mut best) {
-                let run = run(&exchange, patches, threads)?;
+                let run = run(&exchange, 0..patches, threads)?;
                 *best = best.min(run.seconds);
                 (entries, raw) = (run.entries, run.raw);
             }

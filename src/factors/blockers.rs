@@ -1,52 +1,40 @@
 //! Which elements of a facet are seen wholly from an element, which not at all, and which it takes views to tell.
 
-use super::contacts::contacts;
+use super::contacts::{contacts, parts};
 use super::element::{Element, Elements};
 use super::facets::Facets;
 use super::shaft::{Blocker, Blocks, Lies, Shaft};
-use super::shape::Frame;
 use super::tree::ElementTree;
 use crate::bvh::Content;
 use crate::contour::SceneOrder;
 use crate::scene::Side;
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
-/// Where all facets are, seen from one.
+/// Where all facets are, seen from one: each to the plane of this one, and this one to the plane of each.
 pub(super) struct Around {
     facet: u32,
-    /// Each facet to the plane of this one.
-    facets: Vec<Lies>,
-    /// This one to the plane of each facet.
-    own: Vec<Lies>,
-    /// Where facets stand on this one or pass through it, in its frame.
-    contacts: Vec<[DVec2; 2]>,
+    /// If there are so many facets that this is not known for all of them.
+    lies: Vec<[Lies; 2]>,
 }
 
 impl Around {
-    pub(super) fn of(facet: u32, facets: &Facets, frame: &Frame) -> Self {
-        let all = 0..facets.all.len() as u32;
-        let lies = all.map(|other| (facets.lies(other, facet), facets.lies(facet, other)));
-        let (lies, own): (Vec<Lies>, Vec<Lies>) = lies.unzip();
-        let contacts = contacts(facet, facets, frame, &lies);
-        Self { facet, facets: lies, own, contacts }
+    pub(super) fn of(facet: u32, facets: &Facets) -> Self {
+        let all = if facets.are_told_apart() { 0..0 } else { 0..facets.all.len() as u32 };
+        Self { facet, lies: all.map(|other| [facets.lies(other, facet), facets.lies(facet, other)]).collect() }
     }
 
     pub(super) fn facet(&self) -> u32 {
         self.facet
     }
 
-    pub(super) fn contacts(&self) -> &[[DVec2; 2]] {
-        &self.contacts
-    }
-
     /// A facet to the plane of this one.
-    pub(super) fn facet_lies(&self, other: u32) -> Lies {
-        self.facets[other as usize]
+    pub(super) fn facet_lies(&self, facets: &Facets, other: u32) -> Lies {
+        self.lies.get(other as usize).map_or_else(|| facets.lies(other, self.facet), |lies| lies[0])
     }
 
     /// This facet to the plane of another one.
-    pub(super) fn lies(&self, other: u32) -> Lies {
-        self.own[other as usize]
+    pub(super) fn lies(&self, facets: &Facets, other: u32) -> Lies {
+        self.lies.get(other as usize).map_or_else(|| facets.lies(self.facet, other), |lies| lies[1])
     }
 }
 
@@ -79,19 +67,28 @@ struct Visit {
 }
 
 impl Blockers<'_> {
-    /// Calls `found` with the elements of a facet of which the front is seen, and with the facets that may be between if it takes views to tell.
+    /// What two elements are found to be, and what may be between, is the same from either of them: it is decided by exact signs for both, those of facets as a
+    /// whole, and of shafts between them. What is found of many elements at once is found of each.
+    ///
+    /// Calls `found` with the elements of a facet of which the front is seen, and with the facets that may be between if it takes views to tell. Those that are left
+    /// out change nothing for the others.
     pub(super) fn classify(
         &self,
         around: &Around,
         from: &Element,
         facet: u32,
+        is_left_out: impl Fn(u32) -> bool,
         mut found: impl FnMut(u32, Seen, &mut dyn Iterator<Item = u32>),
     ) {
         let tree = &self.trees[facet as usize];
         let frame = &self.elements.frames[facet as usize];
         let Some(root) = tree.root() else { return };
+        let is_over = |node: u32| tree.elements(node).iter().all(|&element| is_left_out(element));
+        if is_over(root) {
+            return;
+        }
         let mut all = |node: u32, seen: Seen, blockers: &[u32], candidates: &[Blocker]| {
-            for &element in tree.elements(node) {
+            for &element in tree.elements(node).iter().filter(|&&element| !is_left_out(element)) {
                 found(element, seen, &mut blockers.iter().map(|&blocker| candidates[blocker as usize].facet));
             }
         };
@@ -99,6 +96,7 @@ impl Blockers<'_> {
             return all(root, Seen::Unknown, &[], &[]);
         }
         let target = &self.facets.all[facet as usize];
+        let own_ring = &self.facets.all[around.facet as usize].ring;
         let shaft = Shaft::between(&from.ring, &target.ring);
         let candidates = self.candidates(around, from, facet, &shaft);
         let mut corners = Vec::new();
@@ -110,48 +108,66 @@ impl Blockers<'_> {
                 tree.corners(node, frame, &self.elements.all, &mut corners);
                 blockers.retain(|&blocker| {
                     is_hidden || {
-                        let blocks = candidates[blocker as usize].blocks(&corners);
+                        let blocks = candidates[blocker as usize].blocks(&corners, is_one);
                         is_hidden = blocks == Blocks::Everything;
                         blocks != Blocks::Nothing
                     }
                 });
             }
-            // The planes of the shaft are for what it is worth: one element.
-            if is_one && !is_hidden && !blockers.is_empty() && tree.elements(root).len() > 1 {
+            // The planes of these shafts are for what it is worth: one element. It is all of them, whichever end one looks from.
+            if is_one && !is_hidden {
                 let ring: Vec<DVec3> = corners.iter().map(|corner| corner.at).collect();
-                let shaft = Shaft::between(&from.ring, &ring);
-                let is_free = |&blocker: &u32| {
-                    let facet = candidates[blocker as usize].facet;
-                    !shaft.excludes(&self.facets.all[facet as usize].ring)
-                };
-                blockers.retain(is_free);
+                for (ring_from, is_known) in [(&from.ring, ring == target.ring), (own_ring, from.ring == *own_ring)] {
+                    if !is_known && !blockers.is_empty() {
+                        let shaft = Shaft::between(ring_from, &ring);
+                        blockers.retain(|&blocker| {
+                            let facet = candidates[blocker as usize].facet;
+                            !shaft.excludes(&self.facets.all[facet as usize].ring)
+                        });
+                    }
+                }
             }
             match tree.halves(node) {
                 _ if is_hidden => all(node, Seen::Never, &[], &[]),
                 _ if blockers.is_empty() => all(node, Seen::Wholly, &[], &[]),
                 None => all(node, Seen::Partly, &blockers, &candidates),
                 Some([first, second]) => {
-                    visits.push(Visit { node: second, blockers: blockers.clone() });
-                    visits.push(Visit { node: first, blockers });
+                    if !is_over(second) {
+                        visits.push(Visit { node: second, blockers: blockers.clone() });
+                    }
+                    if !is_over(first) {
+                        visits.push(Visit { node: first, blockers });
+                    }
                 }
             }
         }
+    }
+
+    /// An element in parts between the lines where facets stand on it or pass through it.
+    pub(super) fn parts(&self, element: &Element) -> Vec<Vec<DVec3>> {
+        // Corners of a mesh are rounded.
+        let reach = element.radius * (1e-12 + element.rounding);
+        let low = element.ring.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)) - reach;
+        let high = element.ring.iter().fold(DVec3::NEG_INFINITY, |high, &p| high.max(p)) + reach;
+        let others = self.within(|other_low, other_high| low.cmple(other_high).all() && high.cmpge(other_low).all());
+        let frame = &self.elements.frames[element.facet as usize];
+        parts(element, frame, &contacts(element.facet, self.facets, frame, &others))
     }
 
     /// The facets that may block light between an element and a whole facet.
     fn candidates(&self, around: &Around, from: &Element, facet: u32, shaft: &Shaft) -> Vec<Blocker> {
         let frame = &self.elements.frames[facet as usize];
         let mut candidates = Vec::new();
-        for number in self.within(shaft) {
+        for number in self.within(|low, high| shaft.may_meet(low, high)) {
             if number == around.facet
                 || number == facet
-                || matches!(around.facet_lies(number), Lies::Behind | Lies::On)
-                || self.is_redundant(around, from, number)
+                || matches!(around.facet_lies(self.facets, number), Lies::Behind | Lies::On)
+                || self.is_redundant(around.facet.min(facet), number)
             {
                 continue;
             }
             let blocker = &self.facets.all[number as usize];
-            let own = match around.lies(number) {
+            let own = match around.lies(self.facets, number) {
                 Lies::Across => Lies::of(&from.ring, blocker.spanning),
                 lies => lies,
             };
@@ -166,15 +182,15 @@ impl Blockers<'_> {
         candidates
     }
 
-    /// The facets in boxes that may meet a shaft, ascending.
-    fn within(&self, shaft: &Shaft) -> Vec<u32> {
+    /// The facets in boxes that may meet something, ascending.
+    fn within(&self, may_meet: impl Fn(DVec3, DVec3) -> bool) -> Vec<u32> {
         let SceneOrder::Boxes(bvh) = &self.facets.order else { unreachable!("views of facets are taken by boxes") };
         let hierarchy = &*bvh.hierarchy;
         let mut stack: Vec<u32> = (0..hierarchy.nodes.len().min(1) as u32).collect();
         let mut pieces = Vec::new();
         while let Some(number) = stack.pop() {
             let node = &hierarchy.nodes[number as usize];
-            if !shaft.may_meet(node.bounds.low, node.bounds.high) {
+            if !may_meet(node.bounds.low, node.bounds.high) {
                 continue;
             }
             match &node.content {
@@ -193,18 +209,18 @@ impl Blockers<'_> {
         numbers
     }
 
-    /// True if light from the element meets another facet of the solid that a facet is part of before it meets that one.
+    /// True if light from one facet meets another facet of the solid that a facet is part of before it meets that one.
     ///
     /// Light that leaves a surface of which it sees the outside, or that it is outside of, gets to an inside through an outside only.
-    fn is_redundant(&self, around: &Around, from: &Element, facet: u32) -> bool {
+    fn is_redundant(&self, from: u32, facet: u32) -> bool {
         let Some(solid) = self.facets.all[facet as usize].solid else { return false };
-        let shown = match around.lies(facet) {
+        let shown = match self.facets.lies(from, facet) {
             Lies::Front => Side::Front,
             Lies::Behind => Side::Back,
             Lies::On | Lies::Across => return false,
         };
-        let own = self.facets.all[around.facet as usize].solid;
-        if own.is_some_and(|own| own.number == solid.number) {
+        let from = &self.facets.all[from as usize];
+        if from.solid.is_some_and(|own| own.number == solid.number) {
             return shown == Side::Back;
         }
         let placement = self.facets.placement;

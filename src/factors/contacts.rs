@@ -13,15 +13,16 @@ use glam::{DVec2, DVec3};
 /// No element is cut into more parts than this.
 const MOST_PARTS: usize = 64;
 
-/// The segments in which facets meet the plane of one, other than those that lie in it: `lies` tells how each lies to it.
-pub(super) fn contacts(facet: u32, facets: &Facets, frame: &Frame, lies: &[Lies]) -> Vec<[DVec2; 2]> {
+/// The segments in which some facets meet the plane of one, other than those that lie in it.
+pub(super) fn contacts(facet: u32, facets: &Facets, frame: &Frame, others: &[u32]) -> Vec<[DVec2; 2]> {
     let [a, b, c] = facets.all[facet as usize].spanning;
     let mut segments = Vec::new();
-    for (other, &lies) in facets.all.iter().zip(lies) {
+    for &number in others {
         // What is behind ends at the plane, and is not seen.
-        if matches!(lies, Lies::On | Lies::Behind) {
+        if matches!(facets.lies(number, facet), Lies::On | Lies::Behind) {
             continue;
         }
+        let other = &facets.all[number as usize];
         let heights: Vec<(DVec3, Sign)> = other.ring.iter().map(|&p| (p, orient3d(a, b, c, p))).collect();
         let next = heights.iter().cycle().skip(1);
         let mut points = heights.iter().zip(next).filter_map(|(&(p, from), &(q, to))| {

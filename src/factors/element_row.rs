@@ -2,7 +2,6 @@
 
 use super::ExchangeError;
 use super::blockers::{Around, Blockers, Seen};
-use super::contacts::parts;
 use super::cubature::{Add, Cubature, Division, Scratch};
 use super::element::{Element, Elements};
 use super::partly::{Partly, PartlySpace};
@@ -10,6 +9,7 @@ use super::row::Share;
 use super::seen::{Columns, LookSpace, Looker};
 use super::shaft::Lies;
 use super::shape::clip;
+use super::shared::{Shared, Told};
 use super::{Sides, contour, pair};
 use glam::DVec3;
 use std::ops::Range;
@@ -30,6 +30,9 @@ pub(super) struct RowSpace {
     /// The element in parts within which what is seen changes steadily.
     parts: Vec<Vec<DVec3>>,
     found: Found,
+    /// What other rows have told this one, or may yet be told by it.
+    complete: Vec<u32>,
+    told: Vec<Told>,
     /// What each column gets.
     shares: Vec<Share>,
     columns: Vec<u32>,
@@ -42,6 +45,8 @@ struct Found {
     /// Where the facets that may be between are in a list.
     between: Vec<Range<u32>>,
     facets: Vec<u32>,
+    /// Those of which another row has told.
+    is_told: Vec<bool>,
 }
 
 impl RowSpace {
@@ -52,6 +57,7 @@ impl RowSpace {
             known: Vec::new(),
             between: vec![0..0; elements.all.len()],
             facets: Vec::new(),
+            is_told: vec![false; elements.all.len()],
         };
         Self {
             look: LookSpace::default(),
@@ -60,6 +66,8 @@ impl RowSpace {
             around: None,
             parts: Vec::new(),
             found,
+            complete: Vec::new(),
+            told: Vec::new(),
             shares: vec![Share::default(); columns],
             columns: Vec::new(),
         }
@@ -76,9 +84,14 @@ impl RowSpace {
 
     /// Ends a row: what its columns have got, ascending.
     fn take(&mut self) -> Vec<(u32, Share)> {
-        let Self { found, shares, columns, .. } = self;
+        let Self { found, complete, told, shares, columns, .. } = self;
         found.known.drain(..).for_each(|element| found.seen[element as usize] = Seen::Unknown);
+        complete.drain(..).for_each(|element| {
+            found.seen[element as usize] = Seen::Unknown;
+            found.is_told[element as usize] = false;
+        });
         found.facets.clear();
+        told.clear();
         columns.sort_unstable();
         columns.dedup();
         columns.drain(..).map(|column| (column, std::mem::take(&mut shares[column as usize]))).collect()
@@ -92,11 +105,21 @@ pub(super) struct Effort {
     pub(super) tolerance: f64,
     /// Whether views are taken at many points near the sides.
     pub(super) towards_sides: bool,
+    /// Whether other rows are told, and tell.
+    pub(super) is_shared: bool,
+}
+
+impl Effort {
+    /// What is placed of a residue comes on top, by as much at most.
+    fn allowed(self) -> f64 {
+        self.tolerance * (0.5 - OF_TOLERANCE)
+    }
 }
 
 /// Computes rows of elements.
 pub(super) struct ElementRows<'a> {
     pub(super) blockers: Blockers<'a>,
+    pub(super) shared: &'a Shared,
     pub(super) looker: Looker<'a>,
     pub(super) most_views: usize,
 }
@@ -118,17 +141,23 @@ impl ElementRows<'_> {
         let elements = self.blockers.elements;
         let tolerance = effort.tolerance;
         let from = &elements.all[number as usize];
-        let around = match space.around.take() {
-            Some(around) if around.facet() == from.facet => around,
-            _ => Around::of(from.facet, self.blockers.facets, &elements.frames[from.facet as usize]),
-        };
-        space.parts = parts(from, &elements.frames[from.facet as usize], around.contacts());
-        space.around = Some(around);
-        // What is placed of a residue comes on top, by as much at most.
-        let allowed = tolerance * (0.5 - OF_TOLERANCE);
+        if space.around.as_ref().is_none_or(|around| around.facet() != from.facet) {
+            space.around = Some(Around::of(from.facet, self.blockers.facets));
+        }
+        space.parts = self.blockers.parts(from);
+        let allowed = effort.allowed();
         let mut division = if effort.towards_sides { Division::TowardsSides } else { Division::None };
+        if effort.is_shared {
+            self.listen(number, space);
+        }
         self.classify(number, tolerance * OF_TOLERANCE, space);
-        self.integrate_all(number, allowed, space);
+        self.integrate_all(number, effort, space);
+        if effort.is_shared && self.is_shareable(number) {
+            self.shared.complete(number, &space.told);
+        }
+        // In an order that does not depend on who has told what.
+        space.columns.sort_unstable();
+        space.columns.dedup();
         if is_complete(space, tolerance) {
             return Ok(());
         }
@@ -156,26 +185,117 @@ impl ElementRows<'_> {
         }
     }
 
+    /// Takes what complete rows have told this one.
+    fn listen(&self, number: u32, space: &mut RowSpace) {
+        if !self.is_shareable(number) {
+            return;
+        }
+        let elements = self.blockers.elements;
+        let told = self.shared.begin(number, &mut space.complete);
+        space.complete.retain(|&other| self.is_shareable(other));
+        for &other in &space.complete {
+            space.found.is_told[other as usize] = true;
+            space.found.seen[other as usize] = Seen::Integrated;
+        }
+        for told in told {
+            let other = told.element as usize;
+            if let Some(exchange) = told.exchange() {
+                space.add(elements.all[other].patch, from_one(exchange, &elements.all[number as usize]));
+            } else {
+                space.found.is_told[other] = false;
+                space.found.seen[other] = Seen::Unknown;
+            }
+        }
+    }
+
+    /// True if what the element exchanges with others of which that is true does not depend on which of them is asked: if it is all of a patch, and
+    /// no view is needed to tell that it is seen.
+    fn is_shareable(&self, number: u32) -> bool {
+        let elements = self.blockers.elements;
+        let Element { patch, facet, .. } = elements.all[number as usize];
+        self.looker.sides == Sides::Fronts
+            && elements.of_patch[patch as usize].len() == 1
+            && !self.blockers.facets.all[facet as usize].is_covered
+    }
+
     /// The facets whose fronts may be seen.
     fn in_front(&self, space: &RowSpace) -> Vec<u32> {
         let Some(around) = &space.around else { return Vec::new() };
         let is_in_front = |lies: Lies| matches!(lies, Lies::Front | Lies::Across);
-        let facets = 0..self.blockers.facets.all.len() as u32;
-        facets.filter(|&facet| is_in_front(around.lies(facet)) && is_in_front(around.facet_lies(facet))).collect()
+        let facets = self.blockers.facets;
+        let all = 0..facets.all.len() as u32;
+        let may_be_seen =
+            |&facet: &u32| is_in_front(around.lies(facets, facet)) && is_in_front(around.facet_lies(facets, facet));
+        all.filter(may_be_seen).collect()
     }
 
     /// Integrates all patches of which all that may hide parts of them is known.
-    fn integrate_all(&self, number: u32, allowed: f64, space: &mut RowSpace) {
+    fn integrate_all(&self, number: u32, effort: Effort, space: &mut RowSpace) {
         let elements = self.blockers.elements;
         let partly = space.found.known.iter().filter(|&&element| space.found.seen[element as usize] == Seen::Partly);
         let mut columns: Vec<u32> = partly.map(|&element| elements.all[element as usize].patch).collect();
         columns.sort_unstable();
         columns.dedup();
+        let is_shareable = self.is_shareable(number);
         for column in columns {
-            if self.is_known(column, space) {
-                self.integrate(number, column, allowed, space);
+            match elements.of_patch[column as usize][..] {
+                [other] if is_shareable && self.is_shareable(other) => {
+                    self.exchange_partly(number, other, effort, space);
+                }
+                _ if self.is_known(column, space) => self.integrate(number, column, effort.allowed(), space),
+                _ => {}
             }
         }
+    }
+
+    /// What is exchanged with an element that is partly seen, as either of the two would find.
+    ///
+    /// It is integrated over the smaller one. The larger one would take fewer points, but a small patch that is seen from a small part of a large one may be
+    /// missed by all of them.
+    fn exchange_partly(&self, number: u32, other: u32, effort: Effort, space: &mut RowSpace) {
+        let elements = self.blockers.elements;
+        let [own, its] = [number, other].map(|k| &elements.all[k as usize]);
+        let Range { start, end } = space.found.between[other as usize].clone();
+        let between = &space.found.facets[start as usize..end as usize];
+        if between.len() > MOST_BETWEEN {
+            space.told.push(Told::of(other, None));
+            return;
+        }
+        let is_own = (own.area, number) < (its.area, other);
+        let (from, to) = if is_own { (own, its) } else { (its, own) };
+        let its_parts = if is_own { Vec::new() } else { self.blockers.parts(its) };
+        let parts = if is_own { &space.parts } else { &its_parts };
+        let share = self.partly(from, parts, to, between, effort.allowed(), &mut space.hidden);
+        let exchange = Share { factor: from.area * share.factor.max(0.0), error: from.area * share.error };
+        space.told.push(Told::of(other, Some(exchange)));
+        space.found.seen[other as usize] = Seen::Integrated;
+        space.add(its.patch, from_one(exchange, own));
+    }
+
+    /// The form factor from an element to what it sees of another one, with these facets between.
+    fn partly(
+        &self,
+        from: &Element,
+        parts: &[Vec<DVec3>],
+        to: &Element,
+        between: &[u32],
+        allowed: f64,
+        space: &mut PartlySpace,
+    ) -> Share {
+        let Blockers { facets, elements, .. } = self.blockers;
+        let [from_frame, to_frame] = [from, to].map(|element| &elements.frames[element.facet as usize]);
+        let blocker = |&facet: &u32| (&facets.all[facet as usize].ring[..], &elements.frames[facet as usize]);
+        let has_horizon = |of: &Element, over: &Element| facets.lies(of.facet, over.facet) == Lies::Across;
+        let partly = Partly {
+            from,
+            from_frame,
+            parts,
+            to,
+            to_frame,
+            has_horizon: [has_horizon(to, from), has_horizon(from, to)],
+            blockers: &between.iter().map(blocker).collect::<Vec<_>>(),
+        };
+        partly.integrate(allowed, self.most_views, space)
     }
 
     /// Means of what views show that is not seen wholly or never.
@@ -197,20 +317,22 @@ impl ElementRows<'_> {
         let from = &elements.all[number as usize];
         for facet in self.in_front(space) {
             let RowSpace { around: Some(around), found, .. } = &mut *space else { return };
-            self.blockers.classify(around, from, facet, |element, seen, between| {
-                let first = found.facets.len() as u32;
-                found.facets.extend(between);
-                found.between[element as usize] = first..found.facets.len() as u32;
-                found.seen[element as usize] = seen;
-                found.known.push(element);
+            let Found { seen: how, known, between: places, facets, is_told } = found;
+            let is_told = |element: u32| is_told[element as usize];
+            self.blockers.classify(around, from, facet, is_told, |element, seen, between| {
+                let first = facets.len() as u32;
+                facets.extend(between);
+                places[element as usize] = first..facets.len() as u32;
+                how[element as usize] = seen;
+                known.push(element);
             });
         }
         for k in 0..space.found.known.len() {
             let element = space.found.known[k];
             if space.found.seen[element as usize] == Seen::Wholly {
-                let Share { factor, error } = self.exchange(number, element, tolerance, space);
-                let share = Share { factor: factor / from.area, error: error / from.area };
-                space.add(elements.all[element as usize].patch, share);
+                let exchange = self.exchange(number, element, tolerance, space);
+                space.told.push(Told::of(element, Some(exchange)));
+                space.add(elements.all[element as usize].patch, from_one(exchange, from));
             }
         }
     }
@@ -223,7 +345,7 @@ impl ElementRows<'_> {
             let Found { seen, between, .. } = &space.found;
             let facet = elements.all[element as usize].facet;
             let from_behind = || match &space.around {
-                Some(around) => around.lies(facet) != Lies::Front,
+                Some(around) => around.lies(self.blockers.facets, facet) != Lies::Front,
                 None => true,
             };
             seen[element as usize] != Seen::Unknown
@@ -236,8 +358,7 @@ impl ElementRows<'_> {
     fn integrate(&self, number: u32, column: u32, allowed: f64, space: &mut RowSpace) {
         let elements = self.blockers.elements;
         let from = &elements.all[number as usize];
-        let frame = &elements.frames[from.facet as usize];
-        let RowSpace { hidden, around: Some(around), found, parts, .. } = &mut *space else { return };
+        let RowSpace { hidden, found, parts, .. } = &mut *space;
         let partly: Vec<u32> = elements.of_patch[column as usize]
             .iter()
             .copied()
@@ -248,20 +369,8 @@ impl ElementRows<'_> {
         for &element in &partly {
             let to = &elements.all[element as usize];
             let Range { start, end } = found.between[element as usize];
-            let blockers = found.facets[start as usize..end as usize]
-                .iter()
-                .map(|&facet| (&self.blockers.facets.all[facet as usize].ring[..], &elements.frames[facet as usize]));
-            let partly = Partly {
-                from,
-                from_frame: frame,
-                parts,
-                to,
-                to_frame: &elements.frames[to.facet as usize],
-                has_horizon: [around.facet_lies(to.facet), around.lies(to.facet)].map(|lies| lies == Lies::Across),
-                blockers: &blockers.collect::<Vec<_>>(),
-            };
-            let allowed = allowed / count as f64;
-            let share = partly.integrate(allowed, self.most_views, hidden);
+            let between = &found.facets[start as usize..end as usize];
+            let share = self.partly(from, parts, to, between, allowed / count as f64, hidden);
             found.seen[element as usize] = Seen::Integrated;
             sum.factor += share.factor.max(0.0);
             sum.error += share.error;
@@ -280,8 +389,9 @@ impl ElementRows<'_> {
             Lies::Across => Lies::of(ring, spanning[plane]),
             whole => whole,
         };
-        let from_lies = lies(around.lies(to.facet), &from.ring, 1);
-        let to_lies = lies(around.facet_lies(to.facet), &to.ring, 0);
+        let facets = self.blockers.facets;
+        let from_lies = lies(around.lies(facets, to.facet), &from.ring, 1);
+        let to_lies = lies(around.facet_lies(facets, to.facet), &to.ring, 0);
         match (from_lies, to_lies) {
             (Lies::Front, Lies::Front) => {
                 let own = (from, planes[0].normal);
@@ -303,6 +413,11 @@ impl ElementRows<'_> {
             _ => Share::default(),
         }
     }
+}
+
+/// The share of what leaves an element that an exchange is.
+fn from_one(exchange: Share, from: &Element) -> Share {
+    Share { factor: exchange.factor / from.area, error: exchange.error / from.area }
 }
 
 /// True if what has a share is all there is, up to errors and what may be neglected.

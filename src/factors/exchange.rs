@@ -7,11 +7,13 @@ use super::element_row::{Effort, ElementRows, RowSpace};
 use super::facets::Facets;
 use super::row::{Entry, PatchInfo, Row, Share};
 use super::seen::{Columns, Looker};
+use super::shared::{self, Shared};
 use super::tree::ElementTree;
 use super::{ExchangeError, ExchangeOptions, PatchPlan};
 use crate::parallel;
 use crate::scene::Scene;
 use std::ops::Range;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// Rows that are in memory at the same time.
@@ -85,7 +87,7 @@ impl Exchange {
         if patch >= self.patches.len() {
             return Err(ExchangeError::UnknownPatch { patch, count: self.patches.len() });
         }
-        self.row_in(patch, &mut RowSpace::new(&self.elements))
+        self.row_in(patch, &Shared::default(), &mut RowSpace::new(&self.elements))
     }
 
     /// Rows in their order, computed by the threads of the current `rayon` pool with the feature `parallel`, and handed over one by one: a few hundred
@@ -104,28 +106,38 @@ impl Exchange {
         let spaces: Mutex<Vec<RowSpace>> = Mutex::new(Vec::new());
         let free = || spaces.lock().unwrap_or_else(PoisonError::into_inner);
         let mut start = patches.start;
+        let mut shared = Shared::default();
         while start < patches.end {
+            if (start - patches.start).is_multiple_of(shared::BLOCK) {
+                shared = Shared::of(&self.elements, start..patches.end.min(start + shared::BLOCK));
+            }
             let chunk: Vec<usize> = (start..patches.end.min(start + CHUNK)).collect();
+            // All threads take the next row there is: few are not complete that others could learn from.
+            let next = AtomicUsize::new(start);
             start += chunk.len();
-            let rows = parallel::map(chunk, |patch| {
+            let mut rows = parallel::map(chunk, |_| {
+                let patch = next.fetch_add(1, Ordering::Relaxed);
                 let space = free().pop();
                 let mut space = space.unwrap_or_else(|| RowSpace::new(&self.elements));
-                let row = self.row_in(patch, &mut space);
+                let row = self.row_in(patch, &shared, &mut space);
                 free().push(space);
-                row
+                (patch, row)
             });
-            for row in rows {
+            rows.sort_unstable_by_key(|&(patch, _)| patch);
+            for (_, row) in rows {
                 take(row?)?;
             }
         }
         Ok(())
     }
 
-    fn row_in(&self, patch: usize, space: &mut RowSpace) -> Result<Row, ExchangeError> {
+    fn row_in(&self, patch: usize, shared: &Shared, space: &mut RowSpace) -> Result<Row, ExchangeError> {
         let mut failure = None;
         for (part, towards_sides) in ATTEMPTS {
-            let effort = Effort { tolerance: self.options.tolerance * part, towards_sides };
-            let mut row = self.raw_row(patch, effort, space)?;
+            // Other rows are told only once.
+            let is_shared = failure.is_none();
+            let effort = Effort { tolerance: self.options.tolerance * part, towards_sides, is_shared };
+            let mut row = self.raw_row(patch, effort, shared, space)?;
             if row.closure_raw == 0.0 {
                 return Ok(row);
             }
@@ -142,11 +154,17 @@ impl Exchange {
     }
 
     /// The row before its residue is placed.
-    fn raw_row(&self, patch: usize, effort: Effort, space: &mut RowSpace) -> Result<Row, ExchangeError> {
+    fn raw_row(
+        &self,
+        patch: usize,
+        effort: Effort,
+        shared: &Shared,
+        space: &mut RowSpace,
+    ) -> Result<Row, ExchangeError> {
         let elements = &self.elements;
         let blockers = Blockers { facets: &self.facets, elements, trees: &self.trees };
         let looker = Looker { facets: &self.facets, elements, trees: &self.trees, sides: self.options.sides };
-        let rows = ElementRows { blockers, looker, most_views: self.options.most_views };
+        let rows = ElementRows { blockers, shared, looker, most_views: self.options.most_views };
         let area = elements.patches[patch].area;
         let mut shares: Vec<(u32, Share)> = Vec::new();
         for &element in &elements.of_patch[patch] {

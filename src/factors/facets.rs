@@ -80,6 +80,11 @@ impl Facets {
 }
 
 impl Facets {
+    /// True if it is known of all facets how they lie to each other.
+    pub(super) fn are_told_apart(&self) -> bool {
+        !self.lies.is_empty()
+    }
+
     /// How a facet lies to the plane of another one.
     pub(super) fn lies(&self, facet: u32, plane: u32) -> Lies {
         let place = plane as usize * self.all.len() + facet as usize;

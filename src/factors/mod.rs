@@ -28,6 +28,7 @@ mod row;
 mod seen;
 mod shaft;
 mod shape;
+mod shared;
 mod tree;
 
 pub use error::ExchangeError;

@@ -26,6 +26,7 @@ impl Plane {
     ///
     /// The filter is that of `orient3d` (docs/numerics.md): the determinant is off by less than 10 u times the permanent, of factors that
     /// neither over- nor underflow.
+    #[inline]
     fn side(&self, p: DVec3) -> Sign {
         let r = p - self.points[0];
         let (det, permanent) = (self.normal.dot(r), self.permanent.dot(r.abs()));
@@ -123,11 +124,16 @@ impl Shaft {
         let all = || i.iter().chain(j).copied();
         let mut planes = Vec::new();
         for (ring, other) in [(i, j), (j, i)] {
-            for [a, b] in sides(ring) {
+            for (k, [a, b]) in sides(ring).enumerate() {
+                let next = if k + 1 == ring.len() { 0 } else { k + 1 };
                 // A plane along this side that touches the other polygon.
-                for &c in other {
+                for (m, &c) in other.iter().enumerate() {
                     let plane = Plane::through([a, b, c]);
-                    if let Some(side) = common_side(all(), &plane) {
+                    // The points that it is through are on it; next to the last of them is what is most often on both sides.
+                    let (before, after) = other.split_at(m);
+                    let others = after[1..].iter().chain(before.iter().rev());
+                    let own = ring.iter().enumerate().filter(|&(n, _)| n != k && n != next).map(|(_, p)| p);
+                    if let Some(side) = common_side(others.chain(own).copied(), &plane) {
                         planes.push((plane, side));
                     }
                 }
@@ -202,6 +208,19 @@ impl Line {
         Self { points, along, offset: normal.dot(to), bound, length }
     }
 
+    /// The same for whatever is within rounding of the corner; zero if that is not sure.
+    fn side_about(&self, corner: &Corner) -> Sign {
+        let value = self.along.dot(corner.flat) + self.offset;
+        // A point is off by 10 u times the coordinates at most: a third of what the bound is for.
+        let bound = 8.0 * self.bound * (self.length + corner.flat.abs().element_sum());
+        match value {
+            _ if bound <= 1e-180 => Sign::Zero,
+            value if value > bound => Sign::Positive,
+            value if value < -bound => Sign::Negative,
+            _ => Sign::Zero,
+        }
+    }
+
     fn side(&self, corner: &Corner) -> Sign {
         let value = self.along.dot(corner.flat) + self.offset;
         let bound = self.bound * (self.length + corner.flat.abs().element_sum());
@@ -245,11 +264,18 @@ impl Blocker {
     }
 
     /// What it does to light from the element to a convex part of the facet: lines between corners pass its sides all inside, or one all outside, or
-    /// it cannot be told.
-    pub(super) fn blocks(&self, part: &[Corner]) -> Blocks {
+    /// it cannot be told. If corners are not exact nothing is told that would not be of any part within them.
+    pub(super) fn blocks(&self, part: &[Corner], is_exact: bool) -> Blocks {
         let [own, whole] = self.lies;
+        let side = |line: &Line, corner: &Corner| if is_exact { line.side(corner) } else { line.side_about(corner) };
         let other = match whole {
-            Lies::Across => Lies::of_signs(part.iter().map(|corner| self.plane.side(corner))),
+            Lies::Across => {
+                let mut signs = part.iter().map(|corner| side(&self.plane, corner));
+                if !is_exact && signs.clone().any(Sign::is_zero) {
+                    return Blocks::Unknown;
+                }
+                Lies::of_signs(&mut signs)
+            }
             whole => whole,
         };
         if own.is_beside(other) {
@@ -262,13 +288,13 @@ impl Blocker {
             _ => return Blocks::Unknown,
         };
         let mut hides = true;
-        for side in self.lines.chunks_exact(self.corners) {
+        for lines in self.lines.chunks_exact(self.corners) {
             let (mut all_inside, mut all_outside) = (true, true);
-            'lines: for line in side {
+            'lines: for line in lines {
                 for corner in part {
-                    let sign = line.side(corner);
-                    all_outside &= sign != inside;
-                    all_inside &= sign != -inside;
+                    let sign = side(line, corner);
+                    all_outside &= sign == -inside || is_exact && sign.is_zero();
+                    all_inside &= sign == inside || is_exact && sign.is_zero();
                     if !all_inside && !all_outside {
                         break 'lines;
                     }
@@ -301,7 +327,7 @@ mod tests {
             let lies = [Lies::of(front, spanning), Lies::of(behind, spanning)];
             let blocker = Blocker::between(front, lies, &frame, (0, ring, spanning));
             let corners: Vec<Corner> = behind.iter().map(|&at| Corner { at, flat: frame.flat(at) }).collect();
-            blocker.blocks(&corners)
+            blocker.blocks(&corners, true)
         };
         // From either side.
         for turned in [false, true] {

@@ -101,7 +101,8 @@ fn what_several_plates_leave_is_what_rays_find() {
 fn shadows_between_the_points_of_a_rule_are_not_missed() {
     let scene = city::city(4).expect("a city");
     let [coarse, fine] = [1e-4, 1e-6].map(|tolerance| exchange(&scene, PatchPlan::Polygons, tolerance));
-    for patch in [33, 141, 162, 165] {
+    // Much of what row 59 sees is small, and seen from a small part of it.
+    for patch in [33, 59, 141, 162, 165] {
         let [row, reference] = [&coarse, &fine].map(|exchange| exchange.row(patch).expect("a row"));
         for column in 0..coarse.patches().len() as u32 {
             let (found, expected) = (factor(&row, column), factor(&reference, column));

@@ -80,6 +80,37 @@ fn rows_are_the_same_bits_for_any_number_of_threads_and_in_any_order() {
 }
 
 #[test]
+fn rows_are_the_same_bits_whichever_are_computed_together() {
+    // Around a turned box in the air, and one that stands on the floor and touches a wall: in a mesh much is told of many patches at once.
+    let (sin, cos) = 0.5_f64.sin_cos();
+    let turned = |[x, y, z]: [f64; 3]| [2.1 + cos * x - sin * y, 1.4 + sin * x + cos * y, z];
+    let mut quads = cuboid([0.; 3], [4., 3., 2.5], true);
+    let of_turned = cuboid([-0.6, -0.5, 0.4], [0.6, 0.5, 1.4], false);
+    quads.extend(of_turned.into_iter().map(|face| face.into_iter().map(turned).collect::<Vec<_>>()));
+    quads.extend(cuboid([0.0, 1.0, 0.0], [0.5, 2.0, 1.0], false));
+    let scene = scene_of(&quads);
+    let exchange = exchange(&scene, PatchPlan::Mesh { longest_edge: 0.4 }, 1e-3);
+    let rows_of = |range: std::ops::Range<usize>| {
+        let mut rows = Vec::new();
+        let taken = exchange.rows(range, |row| {
+            rows.push(row);
+            Ok::<(), ExchangeError>(())
+        });
+        taken.expect("rows");
+        rows
+    };
+    let count = exchange.patches().len();
+    let all = rows_of(0..count);
+    assert!(count > 500 && all.len() == count);
+    for range in [count / 3..count / 2, count / 2..count] {
+        assert!(rows_of(range.clone()) == all[range.clone()], "{range:?}");
+    }
+    for patch in (0..count).step_by(7) {
+        assert_eq!(exchange.row(patch).expect("a row"), all[patch], "{patch}");
+    }
+}
+
+#[test]
 fn objects_see_themselves_and_columns_of_polygons_add_up_to_theirs() {
     let mut builder = Scene::builder();
     let material = builder.add_material(Material::new("grey"));
