@@ -52,6 +52,50 @@ fn a_furnace_is_even() {
     }
 }
 
+/// In a furnace too, what is covered by a block has no light to show beside it.
+#[test]
+fn what_stands_on_a_floor_does_not_darken_it() {
+    let (reflectance, emission) = (0.5, 1.0);
+    let even = material(reflectance, emission);
+    let corner = |k: usize| [0, 1, 2].map(|axis| [[0.5, 1.0, 0.0][axis], [1.0, 1.5, 0.5][axis]][k >> axis & 1]);
+    let block: Vec<[f64; 3]> = (0..8).map(corner).collect();
+    let faces = [[0, 2, 3, 1], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5], [4, 5, 7, 6]];
+    let room = hollow(even.clone(), even.clone());
+    let vertices: Vec<[f64; 3]> = room.vertices().iter().map(DVec3::to_array).collect();
+    let rings = room.polygons().map(|polygon| polygon.rings()[0].iter().map(|v| v.index()).collect());
+    let builder = Scene::builder().mesh(&vertices, &rings.collect::<Vec<_>>(), even.clone());
+    let scene = builder.mesh(&block, &faces.map(|face| face.to_vec()), even).build().expect("a scene");
+    // The block stands on whole patches.
+    let (patches, of) = mesh_scene(&scene, 0.5).expect("a mesh");
+    let tolerance = 1e-6;
+    let exchange = exchange(&patches, tolerance);
+    let mut solver = Solver::new(&patches, &exchange, SolverOptions::default()).expect("a solver");
+    solver.solve(1e-10, |_| true).expect("solved");
+    let gather = Gather::new(SceneOrder::new(&patches), solver.emission(), solver.reflectance(), solver.radiosity());
+    let under = DVec3::new(0.75, 1.2, 0.0);
+    let covered = of.iter().zip(patches.polygons()).find(|(_, patch)| {
+        let ring: Vec<DVec3> = patch.rings()[0].iter().map(|&v| patches.vertex(v)).collect();
+        ring.iter().all(|p| p.z == 0.0 && (p - under).abs().max_element() < 0.4)
+    });
+    let covered = covered.expect("a patch under the block").1.id();
+    assert!((gather.at(covered, under).expect("a view").x - PI * emission).abs() < 1e-12, "it emits into the block");
+    let surface = Surface::new(&patches, &of, &gather, &SurfaceOptions::default()).expect("a surface");
+    let expected = PI * emission / (1.0 - reflectance);
+    // As in the furnace above, with 30 square units in patches of a quarter or less.
+    let bound = tolerance * 30.0 / 0.1 / (1.0 - reflectance);
+    assert!(surface.positions.iter().any(|&p| p.distance(DVec3::new(0.5, 1.0, 0.0)) < 1e-12), "a foot of the block");
+    for (position, radiosity) in surface.positions.iter().zip(&surface.radiosity) {
+        let is_bottom = position.z == 0.0 && (position - under).abs().max_element() < 0.31;
+        assert!((radiosity.x / expected - 1.0).abs() < bound || is_bottom, "{radiosity} at {position}");
+    }
+    // Of the floor those too that are below the block.
+    let floor = surface.triangles.iter().zip(&surface.patches).filter(|(_, patch)| of[patch.index()] == PolygonId(0));
+    for corner in floor.flat_map(|(triangle, _)| triangle) {
+        let radiosity = surface.radiosity[*corner as usize];
+        assert!((radiosity.x / expected - 1.0).abs() < bound, "{radiosity} at {}", surface.positions[*corner as usize]);
+    }
+}
+
 #[test]
 fn power_is_conserved_in_closed_and_open_scenes() {
     let room = generate(Kind::Room, 150, 4).expect("a scene").to_builder().build().expect("a scene");

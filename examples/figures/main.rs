@@ -1,6 +1,7 @@
 //! Makes the figures of docs/figures.md that the program `nusselt` does not make by itself: all, or those named,
 //! such as `cargo run --release --example figures -- fragments tree`. `--docs FOLDER` writes to another folder than docs/images.
 
+mod field;
 mod fragments;
 mod receiver;
 mod shop;
@@ -14,8 +15,13 @@ use std::path::{Path, PathBuf};
 /// Where a figure is written, by its name.
 type Figure = fn(&Path) -> Result<(), Box<dyn Error>>;
 
-const FIGURES: [(&str, Figure); 4] =
-    [("fragments", fragments::draw), ("tree", tree::draw), ("receiver", receiver::draw), ("studio", studio::write)];
+const FIGURES: [(&str, Figure); 5] = [
+    ("fragments", fragments::draw),
+    ("tree", tree::draw),
+    ("receiver", receiver::draw),
+    ("studio", studio::write),
+    ("field", field::draw),
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut folder = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/images"));

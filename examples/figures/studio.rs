@@ -13,7 +13,7 @@ pub(crate) fn write(folder: &Path) -> Result<(), Box<dyn Error>> {
     Ok(studio().write(&scenes, "studio")?)
 }
 
-fn studio() -> Shop {
+pub(crate) fn studio() -> Shop {
     let [width, depth, height] = [4.4, 4.0, 2.6];
     let matt = |name: &str, diffuse| Material { diffuse, ..Material::new(name) };
     let mut shop = Shop::default();
@@ -33,9 +33,8 @@ fn studio() -> Shop {
     shop.material(matt("blue", [0.14, 0.24, 0.5]));
     wall(&mut shop, [1, 5, 7, 3]);
 
-    let wood = Material { specular: [0.05; 3], exponent: 60.0, ..matt("wood", [0.42, 0.27, 0.15]) };
     shop.object("table");
-    shop.material(wood);
+    shop.material(matt("wood", [0.42, 0.27, 0.15]));
     shop.block([1.3, 1.9, 0.7], [3.1, 3.0, 0.75]);
     for [x, y] in [[1.36, 1.96], [2.98, 1.96], [1.36, 2.88], [2.98, 2.88]] {
         shop.block([x, y, 0.0], [x + 0.06, y + 0.06, 0.7]);

@@ -39,28 +39,44 @@ impl<'a> Gather<'a> {
     /// # Errors
     /// If there is no view.
     pub fn at(&self, polygon: PolygonId, near: DVec3) -> Result<DVec3, RadiosityError> {
-        let [emission, reflectance] = [self.emission, self.reflectance].map(|list| list[polygon.index()]);
-        if reflectance == DVec3::ZERO {
-            return Ok(emission);
-        }
-        let irradiance = self.irradiance(polygon, near).map_err(|source| RadiosityError::View { polygon, source })?;
-        Ok(emission + reflectance * irradiance)
+        Ok(self.uncovered(polygon, near)?.unwrap_or(self.emission[polygon.index()]))
     }
 
-    fn irradiance(&self, polygon: PolygonId, near: DVec3) -> Result<DVec3, ViewError> {
+    /// The same, but `None` where nothing but backs is seen: below what stands on a surface.
+    fn uncovered(&self, polygon: PolygonId, near: DVec3) -> Result<Option<DVec3>, RadiosityError> {
+        let [emission, reflectance] = [self.emission, self.reflectance].map(|list| list[polygon.index()]);
+        if reflectance == DVec3::ZERO {
+            return Ok(Some(emission));
+        }
+        let irradiance = self.irradiance(polygon, near).map_err(|source| RadiosityError::View { polygon, source })?;
+        Ok(irradiance.map(|irradiance| emission + reflectance * irradiance))
+    }
+
+    fn irradiance(&self, polygon: PolygonId, near: DVec3) -> Result<Option<DVec3>, ViewError> {
         let Ok(viewpoint) = Viewpoint::on_surface(self.order.scene(), polygon, Side::Front, near) else {
             // It has no area.
-            return Ok(DVec3::ZERO);
+            return Ok(Some(DVec3::ZERO));
         };
         self.spaces.with(|space| {
             let image = self.order.view_in(space, &viewpoint, &Domain::Above, &ViewOptions::default())?;
+            if image.cells().all(|cell| cell.side() == Some(Side::Back)) {
+                return Ok(None);
+            }
             let factors = image.form_factors();
             let seen = factors.iter().flat_map(|factors| &factors.polygons);
-            Ok(seen.map(|seen| self.radiosity[seen.polygon.index()] * seen.front).sum())
+            Ok(Some(seen.map(|seen| self.radiosity[seen.polygon.index()] * seen.front).sum()))
         })
     }
 
-    /// The same for many points, in their order, by all threads.
+    /// [`Gather::at`] for many points, in their order, by all threads; `None` where nothing but backs is seen.
+    pub(super) fn uncovered_at_all(
+        &self,
+        points: Vec<(PolygonId, DVec3)>,
+    ) -> Result<Vec<Option<DVec3>>, RadiosityError> {
+        parallel::map(points, |(polygon, near)| self.uncovered(polygon, near)).into_iter().collect()
+    }
+
+    /// [`Gather::at`] for many points, in their order, by all threads.
     ///
     /// # Errors
     /// The first one that there is no view from.

@@ -32,7 +32,8 @@ impl Default for SurfaceOptions {
 pub struct Surface {
     /// The corners.
     pub positions: Vec<DVec3>,
-    /// The radiosity of the front at each corner.
+    /// The radiosity of the front at each corner. Corners that are covered, by what stands on them, have that of their neighbours, so that it
+    /// does not darken what is beside it.
     pub radiosity: Vec<DVec3>,
     /// Corners by their numbers, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
@@ -78,14 +79,19 @@ impl Surface {
             }
             surface.check_size(options)?;
         }
-        surface.radiosity = gather.at_all(places)?;
+        let patches: Vec<PolygonId> = places.iter().map(|place| place.0).collect();
+        let found = gather.uncovered_at_all(places)?;
+        let mut is_covered: Vec<bool> = found.iter().map(Option::is_none).collect();
+        let radiosity = found.into_iter().zip(patches).map(|(b, patch)| b.unwrap_or(gather.emission(patch)));
+        surface.radiosity = radiosity.collect();
         let mean = surface.mean(gather);
         let mut accepted: FxHashSet<[u32; 2]> = FxHashSet::default();
         for _ in 0..options.depth {
-            if !surface.refine(gather, options, mean, &mut accepted)? {
+            if !surface.refine(gather, options, mean, &mut accepted, &mut is_covered)? {
                 break;
             }
         }
+        surface.fill(is_covered);
         Ok(surface)
     }
 
@@ -114,6 +120,7 @@ impl Surface {
         options: &SurfaceOptions,
         mean: f64,
         accepted: &mut FxHashSet<[u32; 2]>,
+        is_covered: &mut Vec<bool>,
     ) -> Result<bool, RadiosityError> {
         let mut asked: FxHashSet<[u32; 2]> = FxHashSet::default();
         let (mut edges, mut places) = (Vec::new(), Vec::new());
@@ -128,15 +135,18 @@ impl Surface {
                 }
             }
         }
-        let found = gather.at_all(places)?;
+        let patches_of_edges: Vec<PolygonId> = places.iter().map(|place| place.0).collect();
+        let found = gather.uncovered_at_all(places)?.into_iter().zip(patches_of_edges);
         let mut halves: FxHashMap<[u32; 2], u32> = FxHashMap::default();
-        for ((edge, position), radiosity) in edges.into_iter().zip(found) {
+        for ((edge, position), (uncovered, patch)) in edges.into_iter().zip(found) {
+            let radiosity = uncovered.unwrap_or(gather.emission(patch));
             let [p, q] = edge.map(|corner| self.radiosity[corner as usize]);
             let off = (radiosity - p.midpoint(q)).abs().max_element() * 3.0;
             if off > options.detail * strength(radiosity).max(mean) {
                 halves.insert(edge, self.positions.len() as u32);
                 self.positions.push(position);
                 self.radiosity.push(radiosity);
+                is_covered.push(uncovered.is_none());
             } else {
                 accepted.insert(edge);
             }
@@ -150,6 +160,28 @@ impl Surface {
         }
         (self.triangles, self.patches) = (triangles, patches);
         Ok(!halves.is_empty())
+    }
+
+    /// Gives covered corners the mean radiosity of those neighbours that have one, from the outside inwards.
+    fn fill(&mut self, mut is_covered: Vec<bool>) {
+        loop {
+            let mut sums: FxHashMap<u32, (DVec3, f64)> = FxHashMap::default();
+            for edge in self.triangles.iter().flat_map(|&triangle| sides(triangle)) {
+                for [from, to] in [edge, [edge[1], edge[0]]] {
+                    if is_covered[to as usize] && !is_covered[from as usize] {
+                        let sum = sums.entry(to).or_default();
+                        *sum = (sum.0 + self.radiosity[from as usize], sum.1 + 1.0);
+                    }
+                }
+            }
+            if sums.is_empty() {
+                break;
+            }
+            for (corner, (sum, count)) in sums {
+                self.radiosity[corner as usize] = sum / count;
+                is_covered[corner as usize] = false;
+            }
+        }
     }
 }
 
