@@ -9,8 +9,8 @@ use rustc_hash::FxHashMap;
 pub(super) struct Piece {
     /// The number of the polyline.
     pub(super) line: u32,
-    /// How far along it the piece begins, in any measure.
-    pub(super) from: f64,
+    /// How far along it the piece begins and ends, in any measure.
+    pub(super) span: [f64; 2],
     pub(super) ends: [DVec2; 2],
 }
 
@@ -57,20 +57,27 @@ impl Pieces {
         self.all[number as usize]
     }
 
-    /// Breaks a piece at a point. It keeps the first half; the second one gets the number that is returned.
-    pub(super) fn halve(&mut self, number: u32, from: f64, middle: DVec2) -> u32 {
+    /// Breaks a piece at a point, so far along the line. It keeps the first half; the second one gets the number that is returned.
+    pub(super) fn halve(&mut self, number: u32, at: f64, middle: DVec2) -> u32 {
         let whole = self.get(number);
-        for place in whole.squares(self.square) {
-            self.squares.entry(place).or_default().retain(|&other| other != number);
-        }
         let second = self.all.len() as u32;
-        self.all[number as usize].ends[1] = middle;
-        self.all.push(Piece { from, ends: [middle, whole.ends[1]], ..whole });
-        for half in [number, second] {
-            for place in self.get(half).squares(self.square) {
-                self.squares.entry(place).or_default().push(half);
+        let ([from, to], [p, q]) = (whole.span, whole.ends);
+        let halves = [
+            Piece { span: [from, at], ends: [p, middle], ..whole },
+            Piece { span: [at, to], ends: [middle, q], ..whole },
+        ];
+        // A square may have thousands: it is left alone if it keeps the piece.
+        let [first_squares, second_squares] = halves.map(|half| half.squares(self.square).collect::<Vec<_>>());
+        for place in whole.squares(self.square) {
+            if !first_squares.contains(&place) {
+                self.squares.entry(place).or_default().retain(|&other| other != number);
             }
         }
+        for place in second_squares {
+            self.squares.entry(place).or_default().push(second);
+        }
+        self.all[number as usize] = halves[0];
+        self.all.push(halves[1]);
         second
     }
 
@@ -142,7 +149,7 @@ mod tests {
     fn pieces(lines: &[Vec<DVec2>], square: f64) -> Pieces {
         let of_line = |(line, points): (u32, &Vec<DVec2>)| {
             let pairs = points.windows(2).map(|pair| [pair[0], pair[1]]).enumerate();
-            pairs.map(|(k, ends)| Piece { line, from: k as f64, ends }).collect::<Vec<_>>()
+            pairs.map(|(k, ends)| Piece { line, span: [k as f64, k as f64 + 1.0], ends }).collect::<Vec<_>>()
         };
         Pieces::new((0..).zip(lines).flat_map(of_line).collect(), square)
     }
@@ -152,7 +159,7 @@ mod tests {
         let pieces = pieces(lines, square);
         let all: Vec<u32> = (0..pieces.len() as u32).collect();
         let found = pieces.meeting(&all).into_iter().map(|number| pieces.get(number));
-        found.map(|piece| [piece.line, piece.from as u32]).collect()
+        found.map(|piece| [piece.line, piece.span[0] as u32]).collect()
     }
 
     /// What halves meet is what is found in pieces that are made anew.

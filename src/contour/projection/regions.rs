@@ -195,17 +195,15 @@ struct Inner {
 }
 
 impl Path<'_> {
-    /// Adds a point in the middle of a piece of a curve, if it bends by more than rounding.
+    /// Adds a point in the middle of a piece of a curve, if it bends by more than rounding; not in its place in the list.
     fn halve(&mut self, piece: Piece) -> Option<(f64, DVec2)> {
         let curve = self.curve.as_ref()?;
-        let Piece { from, ends: [p, q], .. } = piece;
-        let stretch = self.points.partition_point(|point| point.0 <= from);
-        let to = self.points.get(stretch).map_or(curve.length, |point| point.0);
+        let Piece { span: [from, to], ends: [p, q], .. } = piece;
         let middle = f64::midpoint(from, to);
         let place = curve.place(middle);
         let bends = place.distance(nearest_on_segment(place, p, q)) > f64::EPSILON;
         (bends && middle > from && middle < to).then(|| {
-            self.points.insert(stretch, (middle, place));
+            self.points.push((middle, place));
             (middle, place)
         })
     }
@@ -337,8 +335,9 @@ impl<'a> Flattener<'a> {
             let run = Run { chain, forward: true };
             let path = self.path(chain, tolerance);
             let mut start = (0.0, self.start(run));
-            for &(angle, place) in path.points.iter().chain([&(f64::INFINITY, self.end(run))]) {
-                pieces.push(Piece { line: chain, from: start.0, ends: [start.1, place] });
+            let length = path.curve.as_ref().map_or(1.0, |curve| curve.length);
+            for &(angle, place) in path.points.iter().chain([&(length, self.end(run))]) {
+                pieces.push(Piece { line: chain, span: [start.0, angle], ends: [start.1, place] });
                 start = (angle, place);
             }
             paths.push(path);
@@ -377,7 +376,11 @@ impl<'a> Flattener<'a> {
             }
             room -= new.len() - faults.len();
         }
-        let points = paths.into_iter().map(|path| path.points.into_iter().map(|point| point.1).collect()).collect();
+        let points = paths.into_iter().map(|mut path| {
+            path.points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            path.points.into_iter().map(|point| point.1).collect()
+        });
+        let points = points.collect();
         Inner { points, is_tangled }
     }
 

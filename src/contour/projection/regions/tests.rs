@@ -63,11 +63,12 @@ fn only_what_bends_is_halved() {
             let inner = path.points.iter().map(|point| point.1);
             std::iter::once(curve.place(0.0)).chain(inner).chain([curve.place(curve.length)]).collect::<Vec<_>>()
         };
-        // Of stretches only where they begin and their ends are looked at.
         let piece = |path: &Path<'_>, stretch: usize| {
-            let from = if stretch == 0 { 0.0 } else { path.points[stretch - 1].0 };
+            let inner = path.points.iter().map(|point| point.0);
+            let angles: Vec<f64> = [0.0].into_iter().chain(inner).chain([0.5]).collect();
             let ends = places(path);
-            Piece { line: 7, from, ends: [ends[stretch], ends[stretch + 1]] }
+            let span = [angles[stretch], angles[stretch + 1]];
+            Piece { line: 7, span, ends: [ends[stretch], ends[stretch + 1]] }
         };
         let mut path = Path { curve: Some(curve([DVec3::X, DVec3::Y])), points: Vec::new() };
         // Each time another stretch: the only one, the last, the first, one between.
@@ -78,6 +79,7 @@ fn only_what_bends_is_halved() {
             (2, vec![0.125, 0.25, 0.3125, 0.375]),
         ] {
             let added = path.halve(piece(&path, stretch));
+            path.points.sort_by(|a, b| a.0.total_cmp(&b.0));
             assert_eq!(path.points.iter().map(|point| point.0).collect::<Vec<_>>(), angles);
             assert_eq!(added, Some(path.points[stretch]));
             for (angle, place) in &path.points {
