@@ -33,7 +33,9 @@ fuzz_target!(|data: &[u8]| {
         // Of this length none is.
         assert!(parse_merl(data, "fuzz.binary", unmeasured).is_err());
     }
-    let Some((header, numbers)) = data.split_at_checked(HEADER).filter(|(_, numbers)| !numbers.is_empty()) else { return };
+    let Some((header, numbers)) = data.split_at_checked(HEADER).filter(|(_, numbers)| !numbers.is_empty()) else {
+        return;
+    };
     let mut file = header.to_vec();
     file.extend(numbers.iter().cycle().take(LENGTH - HEADER));
     // The last byte tells which way.
