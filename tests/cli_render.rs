@@ -7,6 +7,7 @@ use common::program::Folder;
 use std::fs::{self, File};
 use std::io::BufReader;
 use std::path::Path;
+use std::process::Command;
 
 const CAMERA: &str = "--eye 278,273,-800 --look-at 278,273,0 --up 0,1,0 --fov 39.3";
 
@@ -133,6 +134,8 @@ fn what_is_wrong_is_said_in_one_line() {
         (with("--exposure 0 -o x.png"), 2, "above 0"),
         (with("-o x.png -o x.png"), 2, "written twice"),
         (with("-o box.obj"), 2, ".png, .exr"),
+        (with("-o none/x.png"), 1, "none does not exist; make its directory first"),
+        (with("--direct --size 3x3 --point-light 278,273,NaN:1 -o x.png"), 2, "--point-light"),
         ("render box.obj --eye 1,2,3 --look-at 1,2,3 --fov 40 -o x.png".to_owned(), 2, "--look-at is --eye"),
         ("render box.obj --eye 1,2,3 -o x.png".to_owned(), 2, "--look-at"),
         ("render box.obj -o x.png".to_owned(), 2, "--eye"),
@@ -142,6 +145,34 @@ fn what_is_wrong_is_said_in_one_line() {
         let error = folder.run(&line, code);
         assert!(error.contains(what), "{line}: {error}");
         assert!(!folder.exists("x.png"), "{line}");
+    }
+}
+
+#[test]
+fn a_scene_without_light_is_black_with_a_warning() {
+    let folder = Folder::new("render-dark");
+    fs::write(folder.path("dark.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").expect("written");
+    let line = "render dark.obj --eye 0.2,0.2,2 --look-at 0.2,0.2,0 --fov 40 --size 4x4";
+    let said = |line: &str| {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_nusselt"));
+        let output = program.args(line.split_whitespace()).current_dir(folder.path(".")).output();
+        String::from_utf8(output.expect("the program runs").stderr).expect("UTF-8")
+    };
+    let warning = said(&format!("{line} -o x.png"));
+    assert!(warning.contains("nothing emits light"), "{warning}");
+    assert!(png(&folder.path("x.png")).1.iter().all(|&byte| byte == 0));
+    assert_eq!(said(&format!("{line} --sky constant:1 -o y.png")), "");
+    assert!(folder.exists("y.png"));
+}
+
+/// Only contour images interpolate between corners.
+#[test]
+fn hemicubes_make_no_corners() {
+    let folder = Folder::new("render-corners");
+    let line = format!("render box.obj {CAMERA} --size 4x4 --patch 400 --depth 0 -o x.png --json");
+    for (shading, has_corners) in [("contour", true), ("hemicube:16", false)] {
+        let summary = folder.parsed(&format!("{line} --shading {shading}"));
+        assert_eq!(summary["corners"].as_u64().expect("a number") > 0, has_corners, "{summary}");
     }
 }
 

@@ -6,6 +6,7 @@ use super::{Brdf, ReflectError, RgbEstimate, Sky};
 use crate::contour::{Cell, ContourImage, Region};
 use crate::integral::CubatureOptions;
 use glam::DVec3;
+use std::fmt;
 
 /// A source of light without extent. It is hidden by whatever is in front of it, and seen by no mirror.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +25,19 @@ pub enum Light {
         /// The irradiance of a surface that faces it, in W / m^2.
         irradiance: DVec3,
     },
+}
+
+impl fmt::Display for Light {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Point { position: p, intensity: i } => {
+                write!(f, "light at {},{},{} of intensity {},{},{}", p.x, p.y, p.z, i.x, i.y, i.z)
+            }
+            Self::Directional { towards: d, irradiance: e } => {
+                write!(f, "light towards {},{},{} of irradiance {},{},{}", d.x, d.y, d.z, e.x, e.y, e.z)
+            }
+        }
+    }
 }
 
 /// All that lights a surface.

@@ -42,7 +42,7 @@ pub enum ReflectError {
     },
     /// A light is where the surface is or in no direction, or its strength is not a number or negative.
     #[error(
-        "{0:?} is no light: it takes a finite direction away from the surface, and finite numbers that are not negative"
+        "the {0} lights nothing here: it takes a finite direction away from the surface, and finite numbers that are not negative"
     )]
     BadLight(Light),
 }

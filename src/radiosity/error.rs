@@ -38,7 +38,7 @@ pub enum RadiosityError {
         expected: usize,
     },
     /// A state has numbers that none has.
-    #[error("the state of patch {patch} is negative or not finite; solve it anew")]
+    #[error("the state of patch {patch} is not finite; solve it anew")]
     BadState {
         /// The first such patch.
         patch: usize,

@@ -2,7 +2,7 @@
 
 use crate::args::{Common, Loading, Order, Way};
 use crate::failure::Failure;
-use crate::output::{clear, keep};
+use crate::output::{clear, have_folders, keep};
 use crate::repairs::changes;
 use nusselt::bsp::{BspError, BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
@@ -20,6 +20,7 @@ pub(crate) fn load<'a>(
     common: &Common,
 ) -> Result<(Scene, f64), Failure> {
     keep(&[path.to_owned()], outputs.clone())?;
+    have_folders(outputs.clone())?;
     outputs.clone().for_each(clear);
     let start = Instant::now();
     let loaded = read_scene(path, &loading.options()).map_err(|error| refused(&error, &loading.repair))?;

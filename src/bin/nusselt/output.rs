@@ -113,6 +113,17 @@ pub(crate) fn check_once<'a>(outputs: impl Iterator<Item = &'a Path>) -> Result<
     Ok(())
 }
 
+/// Refuses outputs in folders that do not exist, before any work is done for them.
+pub(crate) fn have_folders<'a>(mut outputs: impl Iterator<Item = &'a Path>) -> Result<(), Failure> {
+    let has_none = |output: &&Path| {
+        let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
+        folder.is_some_and(|folder| !folder.is_dir())
+    };
+    let Some(output) = outputs.find(has_none) else { return Ok(()) };
+    let folder = output.parent().unwrap_or(output).display();
+    Err(Failure::Work(format!("cannot write {}: {folder} does not exist; make its directory first", output.display())))
+}
+
 /// Refuses outputs that would replace one of the files that are read.
 pub(crate) fn keep<'a>(files: &[PathBuf], outputs: impl Iterator<Item = &'a Path>) -> Result<(), Failure> {
     for output in outputs {

@@ -6,7 +6,7 @@ use crate::progress::Progress;
 use crate::radiosity::{parse_fraction, parse_size};
 use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, mesh_scene};
 use nusselt::radiosity::{RadiosityError, Solver, SolverOptions, SurfaceOptions};
-use nusselt::render::{Indirect, RenderError, Shader};
+use nusselt::render::{Indirect, RenderError, Shader, Shading};
 use std::fmt::Display;
 use std::path::Path;
 use std::time::Instant;
@@ -54,7 +54,13 @@ const PART: f64 = 1.0 / 12.0;
 
 impl Interreflection {
     /// Adds it to a shader, if it is wanted and something emits.
-    pub(super) fn add_to(&self, shader: Shader, file: &Path, common: &Common) -> Result<(Shader, Solved), Failure> {
+    pub(super) fn add_to(
+        &self,
+        shader: Shader,
+        shading: Shading,
+        file: &Path,
+        common: &Common,
+    ) -> Result<(Shader, Solved), Failure> {
         if self.direct {
             return Ok((shader, Solved::default()));
         }
@@ -87,7 +93,7 @@ impl Interreflection {
         let solve_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let mut indirect = Indirect::new(&patches, &of, scene.polygon_count(), solver.emission(), solver.radiosity());
-        if !self.gather {
+        if !self.gather && shading == Shading::Contour {
             let options = SurfaceOptions { detail: self.detail, depth: self.depth, ..SurfaceOptions::default() };
             indirect = indirect.interpolated(&options).map_err(|error| failed(&error))?;
         }

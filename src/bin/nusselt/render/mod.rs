@@ -137,11 +137,18 @@ impl Render {
         let cameras = self.cameras()?;
         let files = outputs::files(&self.output, self.frames.as_deref(), cameras.len())?;
         let (scene, load_s) = load(&self.scene, files.iter().map(PathBuf::as_path), &self.loading, common)?;
+        let is_dark = !scene.materials().iter().any(nusselt::scene::Material::is_emitter)
+            && lighting.sky.is_none()
+            && lighting.lights.is_empty();
+        if is_dark {
+            let advice = "give it --sky, --point-light or --directional-light";
+            common.warn(&format!("{}: nothing emits light, so the picture is black; {advice}", self.scene.display()));
+        }
         let brdfs = self.brdfs(&scene, common)?;
         let (order, order_s) = self.order(&scene)?;
         let options = ShaderOptions { shading: self.shading, mirrors: self.mirrors, ..ShaderOptions::default() };
         let shader = Shader::with_brdfs(order, brdfs, lighting, options).map_err(|error| self.refused(&error))?;
-        let (shader, solved) = self.interreflection.add_to(shader, &self.scene, common)?;
+        let (shader, solved) = self.interreflection.add_to(shader, self.shading, &self.scene, common)?;
         let mut exposure = self.exposure;
         let (mut frame_ms, mut points) = (Vec::new(), 0);
         let pixels = (self.size.x as usize * self.size.y as usize).saturating_mul(cameras.len());
