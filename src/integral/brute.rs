@@ -39,6 +39,11 @@ fn triangle([a, b, c]: [DVec3; 3], axis: DVec3, width: f64, f: &impl Fn(DVec3) -
         let [d, e, g] = [(a + b).normalize(), (b + c).normalize(), (c + a).normalize()];
         return [[a, d, g], [d, b, e], [g, e, c], [d, e, g]].map(|part| triangle(part, axis, width, f)).iter().sum();
     }
+    over_triangle([a, b, c], f)
+}
+
+/// The integral of a function over a spherical triangle by 100 points.
+pub(crate) fn over_triangle([a, b, c]: [DVec3; 3], f: &impl Fn(DVec3) -> DVec3) -> DVec3 {
     let area = a.dot((b - a).cross(c - a));
     let mut sum = DVec3::ZERO;
     for (s, weight_s) in gauss() {

@@ -3,26 +3,13 @@
 use super::{at, models};
 use crate::brdf::reflect::{Lit, Surroundings, reflect};
 use crate::brdf::{Brdf, Form, Fresnel, Ggx, RgbEstimate, ShBrdf, ShSymmetry};
-use crate::integral::brute::gauss;
+use crate::integral::brute::over_triangle;
 use crate::integral::random::{Random, Tally};
 use crate::integral::{CubatureOptions, Smoothness, clip, perimeter, solid_angle};
 use glam::DVec3;
 
 /// Cases in all.
 const CASES: usize = 10_000;
-
-/// The integral of a function over a triangle by 100 points.
-fn over([a, b, c]: [DVec3; 3], f: &impl Fn(DVec3) -> DVec3) -> DVec3 {
-    let mut sum = DVec3::ZERO;
-    for (s, weight_s) in gauss() {
-        for (t, weight_t) in gauss() {
-            let p = a + (b - a) * (s * (1.0 - t)) + (c - a) * (s * t);
-            let length = p.length();
-            sum += f(p / length) * (weight_s * weight_t * s / length.powi(3));
-        }
-    }
-    sum * a.dot((b - a).cross(c - a))
-}
 
 /// Integrals by 100 points a triangle, in quarters until the quarters sum to what the whole gave, with what they differ by.
 struct Truth<'a, F> {
@@ -41,7 +28,7 @@ impl<F: Fn(DVec3) -> DVec3> Truth<'_, F> {
     fn add(&mut self, [a, b, c]: [DVec3; 3], whole: DVec3, depth: u32) {
         let [d, e, g] = [(a + b).normalize(), (b + c).normalize(), (c + a).normalize()];
         let quarters = [[a, d, g], [d, b, e], [g, e, c], [d, e, g]];
-        let values = quarters.map(|quarter| over(quarter, self.f));
+        let values = quarters.map(|quarter| over_triangle(quarter, self.f));
         self.evaluations += 400;
         let sum: DVec3 = values.iter().sum();
         let longest = a.distance(b).max(b.distance(c)).max(c.distance(a));
@@ -109,7 +96,7 @@ fn check(name: &str, brdf: &dyn Brdf, width: f64, random: &mut Random, cases: us
             let middle = part.iter().sum::<DVec3>().normalize_or(DVec3::Z);
             for k in 0..part.len() {
                 let triangle = [middle, part[k], part[(k + 1) % part.len()]];
-                truth.add(triangle, over(triangle, &f), if is_smooth { 16 } else { 10 });
+                truth.add(triangle, over_triangle(triangle, &f), if is_smooth { 16 } else { 10 });
             }
         }
         if truth.doubt.max_element() > (0.1 * stated).max(1e-13 * size) {
