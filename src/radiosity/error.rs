@@ -37,7 +37,7 @@ pub enum RadiosityError {
         /// How many it should have.
         expected: usize,
     },
-    /// A state has numbers that none has.
+    /// A state has numbers that are not finite.
     #[error("the state of patch {patch} is not finite; solve it anew")]
     BadState {
         /// The first such patch.

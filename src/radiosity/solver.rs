@@ -107,7 +107,7 @@ impl<'a> Solver<'a> {
     /// Goes on from a state that [`Solver::state`] gave.
     ///
     /// # Errors
-    /// If it is that of another number of patches, or has numbers that none has.
+    /// If it is that of another number of patches, or has numbers that are not finite.
     pub fn resume(&mut self, state: SolverState) -> Result<(), RadiosityError> {
         let expected = self.emission.len();
         for found in [state.radiosity.len(), state.unshot.len()] {
