@@ -3,6 +3,8 @@
 //! What a view costs is what there is to tell apart in it (docs/performance.md). Between patches of one facet there is nothing to tell
 //! apart for the eye: the part of a facet that is seen is divided among its patches afterwards, in its plane.
 
+use super::bodies::{Bodies, FacetSide};
+use super::element::Element;
 use super::placement::Placement;
 use super::shaft::Lies;
 use crate::bvh::{self, SceneBvh, Solid};
@@ -19,6 +21,7 @@ pub(super) struct Facets {
     pub(super) of_piece: Vec<u32>,
     /// Where they are: all coordinates here are local to it.
     pub(super) placement: Placement,
+    pub(super) bodies: Bodies,
     /// How each facet lies to the plane of each, row by row of planes, if there are few enough to keep that.
     lies: Vec<Lies>,
 }
@@ -75,7 +78,8 @@ impl Facets {
         for plane in planes {
             lies.extend(facets.iter().map(|facet| Lies::of(&facet.ring, plane.spanning)));
         }
-        Ok(Self { order: SceneBvh::build(&scene).into(), all: facets, of_piece, placement, lies })
+        let bodies = Bodies::of(&facets, |facet, plane| lies_in(&lies, &facets, facet, plane));
+        Ok(Self { order: SceneBvh::build(&scene).into(), all: facets, of_piece, placement, bodies, lies })
     }
 }
 
@@ -87,10 +91,28 @@ impl Facets {
 
     /// How a facet lies to the plane of another one.
     pub(super) fn lies(&self, facet: u32, plane: u32) -> Lies {
-        let place = plane as usize * self.all.len() + facet as usize;
-        let other = || Lies::of(&self.all[facet as usize].ring, self.all[plane as usize].spanning);
-        self.lies.get(place).copied().unwrap_or_else(other)
+        lies_in(&self.lies, &self.all, facet, plane)
     }
+
+    /// How an element lies to the plane of another facet.
+    pub(super) fn lies_of(&self, element: &Element, plane: u32) -> Lies {
+        match self.lies(element.facet, plane) {
+            Lies::Across => Lies::of(&element.ring, self.all[plane as usize].spanning),
+            lies => lies,
+        }
+    }
+
+    /// The name of a side of a facet, by its place in the ring.
+    pub(super) fn side(&self, facet: u32, place: u32) -> FacetSide {
+        self.bodies.side(facet, place)
+    }
+}
+
+/// How a facet lies to the plane of another one, if all do or only those asked for are known.
+fn lies_in(lies: &[Lies], facets: &[Facet], facet: u32, plane: u32) -> Lies {
+    let place = plane as usize * facets.len() + facet as usize;
+    let other = || Lies::of(&facets[facet as usize].ring, facets[plane as usize].spanning);
+    lies.get(place).copied().unwrap_or_else(other)
 }
 
 /// The corners of a convex ring that span the largest triangle with its first edge's start, in their order.

@@ -6,6 +6,7 @@
 //! `docs/form-factors.md` tells how, with what accuracy and at what cost.
 
 mod blockers;
+mod bodies;
 mod closure;
 mod contacts;
 mod contour;
@@ -25,6 +26,7 @@ mod placement;
 mod points;
 mod reciprocity;
 mod row;
+mod screens;
 mod seen;
 mod shaft;
 mod shape;

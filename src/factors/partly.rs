@@ -5,10 +5,11 @@
 //! of the element, sides of blockers are bounds that are none from any of the points, estimates are raised.
 
 use super::cubature::{Rule, Sample, halves};
-use super::element::{Element, quads};
+use super::bodies::FacetSide;
+use super::element::{Element, Elements, quads};
+use super::facets::Facets;
 use super::hidden::{HiddenSpace, Target};
 use super::row::Share;
-use super::shape::Frame;
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -22,16 +23,14 @@ const OF_MANY: f64 = 0.015;
 
 /// Two elements with what is between them.
 pub(super) struct Partly<'a> {
+    pub(super) facets: &'a Facets,
+    pub(super) elements: &'a Elements,
     pub(super) from: &'a Element,
-    pub(super) from_frame: &'a Frame,
     /// It in parts between the lines where others stand on it.
     pub(super) parts: &'a [Vec<DVec3>],
     pub(super) to: &'a Element,
-    pub(super) to_frame: &'a Frame,
-    /// Whether the other element is on both sides of the plane of the one it is seen from, and the other way round.
-    pub(super) has_horizon: [bool; 2],
-    /// Corners, counter-clockwise seen from the front, and the plane.
-    pub(super) blockers: &'a [(&'a [DVec3], &'a Frame)],
+    /// Facets, ascending.
+    pub(super) between: &'a [u32],
 }
 
 /// Memory and rules that are used again.
@@ -54,8 +53,7 @@ impl Partly<'_> {
     /// enough for that.
     pub(super) fn integrate(&self, allowed: f64, most: usize, space: &mut PartlySpace) -> Share {
         let PartlySpace { there, back, few, many } = space;
-        let blockers = self.blockers.iter().copied();
-        let target = Target::new(self.to, self.to_frame, self.from_frame, self.has_horizon[0], blockers, there);
+        let target = Target::new(self.facets, self.elements, [self.from, self.to], self.between, there);
         // With nothing between, what is seen changes steadily.
         let eyes = self.from.ring.iter().copied().chain([self.from.centre]);
         let at_most = eyes.map(|eye| target.whole_factor(eye, there)).fold(0.0, f64::max);
@@ -95,9 +93,8 @@ impl Partly<'_> {
     }
 
     /// True if, of what corners of the other element see of this one, sides are bounds that are not known.
-    fn look_back(&self, known: Vec<(u32, u32)>, space: &mut HiddenSpace) -> bool {
-        let blockers = self.blockers.iter().copied();
-        let own = Target::new(self.from, self.from_frame, self.to_frame, self.has_horizon[1], blockers, space);
+    fn look_back(&self, known: Vec<FacetSide>, space: &mut HiddenSpace) -> bool {
+        let own = Target::new(self.facets, self.elements, [self.to, self.from], self.between, space);
         let count = known.len();
         space.bounds = Some(known);
         self.to.ring.iter().for_each(|&corner| own.note_bounds(corner, space));
