@@ -11,6 +11,7 @@ use crate::bvh::{self, SceneBvh, Solid};
 use crate::contour::SceneOrder;
 use crate::scene::{FaceSpec, Material, PieceId, Scene, SceneError};
 use glam::DVec3;
+use std::ops::Range;
 
 /// A scene whose polygons are the facets of another one.
 pub(super) struct Facets {
@@ -22,6 +23,9 @@ pub(super) struct Facets {
     /// Where they are: all coordinates here are local to it.
     pub(super) placement: Placement,
     pub(super) bodies: Bodies,
+    /// The facets of the panels of the boxes, in their order, and where those of each begin.
+    in_boxes: Vec<u32>,
+    first_in: Vec<u32>,
     /// How each facet lies to the plane of each, row by row of planes, if there are few enough to keep that.
     lies: Vec<Lies>,
 }
@@ -34,6 +38,8 @@ pub(super) struct Facet {
     pub(super) ring: Vec<DVec3>,
     /// Three corners that are not in line, which run the same way.
     pub(super) spanning: [DVec3; 3],
+    /// The box around it.
+    pub(super) bounds: [DVec3; 2],
     /// True if another facet may lie on part of it in its plane: which one is seen there takes a view.
     pub(super) is_covered: bool,
     /// The solid of the scene that it is part of; its box is that of the scene, not scaled.
@@ -68,7 +74,10 @@ impl Facets {
             }
             let ring: Vec<DVec3> = joined.ring.iter().map(|&vertex| placement.local(scene.vertex(vertex))).collect();
             let spanning = spanning(&ring);
-            facets.push(Facet { ring, spanning, is_covered: covered(joined.pieces[0]), solid: joined.solid });
+            let low = ring.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+            let high = ring.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+            let bounds = [low, high];
+            facets.push(Facet { ring, spanning, bounds, is_covered: covered(joined.pieces[0]), solid: joined.solid });
             let ring = joined.ring.iter().map(|vertex| vertex.index()).collect();
             builder.add_face(FaceSpec { rings: vec![ring], object, material });
         }
@@ -79,7 +88,9 @@ impl Facets {
             lies.extend(facets.iter().map(|facet| Lies::of(&facet.ring, plane.spanning)));
         }
         let bodies = Bodies::of(&facets, |facet, plane| lies_in(&lies, &facets, facet, plane));
-        Ok(Self { order: SceneBvh::build(&scene).into(), all: facets, of_piece, placement, bodies, lies })
+        let bvh = SceneBvh::build(&scene);
+        let (in_boxes, first_in) = of_panels(&bvh);
+        Ok(Self { order: bvh.into(), all: facets, of_piece, placement, bodies, in_boxes, first_in, lies })
     }
 }
 
@@ -102,10 +113,27 @@ impl Facets {
         }
     }
 
+    /// Those of panels of the boxes, by their places.
+    pub(super) fn of_panels(&self, range: Range<u32>) -> &[u32] {
+        let [start, end] = [range.start, range.end].map(|place| self.first_in[place as usize] as usize);
+        &self.in_boxes[start..end]
+    }
+
     /// The name of a side of a facet, by its place in the ring.
     pub(super) fn side(&self, facet: u32, place: u32) -> FacetSide {
         self.bodies.side(facet, place)
     }
+}
+
+/// The polygons of the panels of a scene's boxes, in their order, and where those of each begin.
+fn of_panels(bvh: &SceneBvh) -> (Vec<u32>, Vec<u32>) {
+    let hierarchy = &*bvh.hierarchy;
+    let (mut polygons, mut first) = (Vec::new(), vec![0]);
+    for &panel in &hierarchy.order {
+        hierarchy.panels.pieces(panel, &mut Vec::new(), |piece| polygons.push(hierarchy.scene.piece(piece).polygon().0));
+        first.push(polygons.len() as u32);
+    }
+    (polygons, first)
 }
 
 /// How a facet lies to the plane of another one, if all do or only those asked for are known.
