@@ -62,10 +62,13 @@ impl Bodies {
         }
         let name = |own: u32, place: u32, side: [DVec3; 2]| {
             let body = found.of_facet[own as usize];
-            let shared = around.beyond(side).filter(|&(other, _)| body.is_some() && found.of_facet[other as usize] == body);
+            let shared =
+                around.beyond(side).filter(|&(other, _)| body.is_some() && found.of_facet[other as usize] == body);
             shared.map_or((own, place + 1), |other| other.min((own, place + 1)))
         };
-        let names = |(own, facet): (u32, &Facet)| (0..).zip(sides(&facet.ring)).map(|(place, side)| name(own, place, side)).collect();
+        let names = |(own, facet): (u32, &Facet)| {
+            (0..).zip(sides(&facet.ring)).map(|(place, side)| name(own, place, side)).collect()
+        };
         found.sides = (0..).zip(facets).map(names).collect();
         found
     }
@@ -113,7 +116,9 @@ impl<'a> Sides<'a> {
         let mut next = 0;
         while next < group.len() && group.len() <= MOST_FACETS {
             for side in sides(&self.facets[group[next] as usize].ring) {
-                let Some((other, _)) = self.beyond(side).filter(|&(other, _)| !is_done[other as usize]) else { continue };
+                let Some((other, _)) = self.beyond(side).filter(|&(other, _)| !is_done[other as usize]) else {
+                    continue;
+                };
                 let are_convex =
                     |&one: &u32| one != other && lies(one, other) == Lies::Behind && lies(other, one) == Lies::Behind;
                 if group.iter().all(are_convex) {

@@ -130,7 +130,9 @@ fn of_panels(bvh: &SceneBvh) -> (Vec<u32>, Vec<u32>) {
     let hierarchy = &*bvh.hierarchy;
     let (mut polygons, mut first) = (Vec::new(), vec![0]);
     for &panel in &hierarchy.order {
-        hierarchy.panels.pieces(panel, &mut Vec::new(), |piece| polygons.push(hierarchy.scene.piece(piece).polygon().0));
+        hierarchy
+            .panels
+            .pieces(panel, &mut Vec::new(), |piece| polygons.push(hierarchy.scene.piece(piece).polygon().0));
         first.push(polygons.len() as u32);
     }
     (polygons, first)
