@@ -14,6 +14,8 @@ use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+/// What is seen of an element is nothing if it is less than this part of what would be.
+const ROUNDING: f64 = 1e-12;
 /// Few points are enough where no more than so many times what is allowed would arrive with nothing between.
 const SMALL: f64 = 8.0;
 /// The part of that which few points are taken to be wrong by at least; like the next one, chosen by what entries of dense cities were off by.
@@ -69,7 +71,7 @@ impl Partly<'_> {
             let mut quads = self.sample(few, &target, there);
             quads.worsen(OF_FEW * at_most);
             if quads.error() <= allowed {
-                return quads.total();
+                return quads.total(at_most);
             }
         }
         there.bounds = Some(Vec::new());
@@ -95,7 +97,7 @@ impl Partly<'_> {
                 halves(worst.corners, first).into_iter().for_each(&mut add);
             }
         }
-        quads.total()
+        quads.total(at_most)
     }
 
     /// All of the element.
@@ -198,9 +200,11 @@ impl Quads {
         self.error.max(0.0).min(OF_ROOT * self.squares.max(0.0).sqrt()) + self.missed
     }
 
-    fn total(self) -> Share {
+    /// The integral, of a factor that is nowhere larger than this with nothing between.
+    fn total(self, at_most: f64) -> Share {
         let error = self.error();
         let factor = self.waiting.into_sorted_vec().iter().fold(0.0, |sum, quad| sum + quad.sample.value);
-        Share { factor, error }
+        // Rounding leaves slivers of what is hidden.
+        if factor.abs().max(error) <= ROUNDING * at_most { Share::default() } else { Share { factor, error } }
     }
 }

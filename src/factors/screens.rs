@@ -58,10 +58,12 @@ pub(super) struct HalfPlane {
 
 impl HalfPlane {
     /// What is above a plane, in another one.
+    #[inline]
     pub(super) fn above(normal: DVec3, offset: f64) -> Self {
         Self { along: normal.truncate(), offset }
     }
 
+    #[inline]
     pub(super) fn height(&self, p: DVec2) -> f64 {
         self.along.dot(p) + self.offset
     }
