@@ -166,8 +166,13 @@ impl Shaft {
                     let (before, after) = other.split_at(m);
                     let others = after[1..].iter().chain(before.iter().rev());
                     let own = ring.iter().enumerate().filter(|&(n, _)| n != k && n != next).map(|(_, p)| p);
-                    if let Some(side) = common_side(others.chain(own).copied(), &plane) {
+                    if let Some(side) = common_side(others.chain(own.clone()).copied(), &plane) {
+                        // There is one more only if this is the plane of the ring itself.
+                        let is_last = own.copied().any(|p| plane.side(p) == side);
                         planes.push((plane, side));
+                        if is_last {
+                            break;
+                        }
                     }
                 }
             }
