@@ -22,7 +22,7 @@ use report::{Asked, Report, Times};
 use std::io::{self, BufWriter, ErrorKind};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tally::Tally;
 
 const EXAMPLE: &str = "\
@@ -193,11 +193,6 @@ fn refused(scene: &Path, error: MatrixError) -> Failure {
     }
 }
 
-/// Rows that are computed together at most: those of one chunk of the library.
-const MOST_ROWS: u32 = 256;
-/// Chunks grow until they take about this long: so much work is lost by an interruption, and so often one sees how far it is.
-const CHUNK_TIME: Duration = Duration::from_secs(1);
-
 /// What is to be done for every row.
 struct Work<'a, 'p> {
     file: &'a Path,
@@ -244,32 +239,44 @@ impl Work<'_, '_> {
         }
     }
 
-    /// Computes rows in all threads, and hands them on in their order.
-    fn run(&mut self, rows: Range<u32>, mut write: impl FnMut(&Row) -> Result<(), Unwritten>) -> Result<(), Unwritten> {
-        let mut progress = Progress::new("rows", Some(rows.len()), self.quiet);
-        let mut count = (4 * rayon::current_num_threads() as u32).min(MOST_ROWS);
-        let mut next = rows.start;
-        while next < rows.end {
-            let end = rows.end.min(next.saturating_add(count));
-            let start = Instant::now();
-            let mut chunk = Vec::with_capacity((end - next) as usize);
-            let made = self.exchange.rows(next as usize..end as usize, |row| {
-                chunk.push(row);
-                Ok::<(), ExchangeError>(())
-            });
-            made.map_err(|error| Failure::about(self.file, &error))?;
-            let took = start.elapsed();
-            self.times.add_rows(chunk.len(), took);
-            for row in &chunk {
-                self.tally.add(row);
-                write(row)?;
-            }
-            progress.add(chunk.len());
-            if took < CHUNK_TIME / 2 {
-                count = (2 * count).min(MOST_ROWS);
-            }
-            next = end;
-        }
-        Ok(())
+    /// Computes rows in all threads, and hands them on in their order, each as soon as all before it are there.
+    fn run(
+        &mut self,
+        rows: Range<u32>,
+        mut write: impl FnMut(&Row) -> Result<(), Unwritten> + Send,
+    ) -> Result<(), Unwritten> {
+        let Self { file, exchange, tally, times, quiet } = self;
+        let mut progress = Progress::new("rows", Some(rows.len()), *quiet);
+        let start = Instant::now();
+        let ended = exchange.timed_rows(rows.start as usize..rows.end as usize, |row, took| {
+            times.add_row(took);
+            tally.add(&row);
+            write(&row)?;
+            progress.add(1);
+            Ok::<(), Stopped>(())
+        });
+        times.rows_s += start.elapsed().as_secs_f64();
+        ended.map_err(|stopped| match stopped {
+            Stopped::NoRow(error) => Unwritten::Failed(Failure::about(file, &error)),
+            Stopped::Unwritten(unwritten) => unwritten,
+        })
+    }
+}
+
+/// Why there are no more rows.
+enum Stopped {
+    NoRow(ExchangeError),
+    Unwritten(Unwritten),
+}
+
+impl From<ExchangeError> for Stopped {
+    fn from(error: ExchangeError) -> Self {
+        Self::NoRow(error)
+    }
+}
+
+impl From<Unwritten> for Stopped {
+    fn from(unwritten: Unwritten) -> Self {
+        Self::Unwritten(unwritten)
     }
 }
