@@ -59,6 +59,37 @@ impl ElementRows<'_> {
         space.add(its.patch, from_one(exchange, own));
     }
 
+    /// The form factor to another element by points on this one, whatever their sizes and however well it is seen: for a check of what rows have. `None` if views
+    /// are needed for it.
+    pub(super) fn by_points(&self, number: u32, other: u32, effort: Effort, space: &mut RowSpace) -> Option<Share> {
+        if !self.is_shareable(number) || !self.is_shareable(other) {
+            return None;
+        }
+        let elements = self.blockers.elements;
+        let [from, to] = [number, other].map(|k| &elements.all[k as usize]);
+        self.stand_on(from, space);
+        let RowSpace { around: Some(around), parts, hidden, .. } = space else { return None };
+        let mut found = None;
+        if self.is_in_front(around, to.facet) {
+            self.blockers.classify(
+                around,
+                from,
+                to.facet,
+                |element| element != other,
+                |_, seen, between| {
+                    found = Some((seen, between.collect::<Vec<u32>>()));
+                },
+            );
+        }
+        match found {
+            None | Some((Seen::Never, _)) => Some(Share::default()),
+            Some((Seen::Wholly | Seen::Partly, between)) if between.len() <= MOST_BETWEEN => {
+                Some(self.partly(from, parts, to, &between, effort.allowed(), hidden))
+            }
+            Some(_) => None,
+        }
+    }
+
     /// The form factor from an element to what it sees of another one, with these facets between.
     fn partly(
         &self,

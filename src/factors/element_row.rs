@@ -34,6 +34,11 @@ impl Effort {
     }
 }
 
+/// A residue that is not larger says no more of any factor than that its error is within half the tolerance: it is no reason to compute a row anew.
+pub(super) fn explained(tolerance: f64) -> f64 {
+    0.5 * tolerance
+}
+
 /// Computes rows of elements.
 pub(super) struct ElementRows<'a> {
     pub(super) blockers: Blockers<'a>,
@@ -59,10 +64,7 @@ impl ElementRows<'_> {
         let elements = self.blockers.elements;
         let tolerance = effort.tolerance;
         let from = &elements.all[number as usize];
-        if space.around.as_ref().is_none_or(|around| around.facet() != from.facet) {
-            space.around = Some(Around::of(from.facet, self.blockers.facets));
-        }
-        space.parts = self.blockers.parts(from);
+        self.stand_on(from, space);
         let allowed = effort.allowed();
         let mut division = if effort.towards_sides { Division::TowardsSides } else { Division::None };
         if effort.is_shared {
@@ -93,7 +95,8 @@ impl ElementRows<'_> {
                 Division::Alike(halvings) if halvings < MOST_HALVINGS => Some(Division::Alike(halvings + 1)),
                 Division::Alike(_) | Division::TowardsSides => None,
             };
-            let Some(finer) = next.filter(|_| (sum - 1.0).abs() > error) else {
+            let is_off = (sum - 1.0).abs() > error.max(explained(tolerance));
+            let Some(finer) = next.filter(|_| is_off) else {
                 let columns: Vec<u32> = means.parts.iter().map(|part| part.column).collect();
                 columns.into_iter().zip(rest).for_each(|(column, share)| space.add(column, share));
                 return Ok(());
@@ -101,6 +104,14 @@ impl ElementRows<'_> {
             // Few views have missed something.
             division = finer;
         }
+    }
+
+    /// Finds what all rows and pairs of an element start from.
+    pub(super) fn stand_on(&self, from: &Element, space: &mut RowSpace) {
+        if space.around.as_ref().is_none_or(|around| around.facet() != from.facet) {
+            space.around = Some(Around::of(from.facet, self.blockers.facets));
+        }
+        space.parts = self.blockers.parts(from);
     }
 
     /// Takes what complete rows have told this one.
@@ -135,12 +146,14 @@ impl ElementRows<'_> {
     /// The facets whose fronts may be seen.
     fn in_front(&self, space: &RowSpace) -> Vec<u32> {
         let Some(around) = &space.around else { return Vec::new() };
-        let is_in_front = |lies: Lies| matches!(lies, Lies::Front | Lies::Across);
+        (0..self.blockers.facets.all.len() as u32).filter(|&facet| self.is_in_front(around, facet)).collect()
+    }
+
+    /// True if the front of a facet may be seen.
+    pub(super) fn is_in_front(&self, around: &Around, facet: u32) -> bool {
         let facets = self.blockers.facets;
-        let all = 0..facets.all.len() as u32;
-        let may_be_seen =
-            |&facet: &u32| is_in_front(around.lies(facets, facet)) && is_in_front(around.facet_lies(facets, facet));
-        all.filter(may_be_seen).collect()
+        let is_in_front = |lies: Lies| matches!(lies, Lies::Front | Lies::Across);
+        is_in_front(around.lies(facets, facet)) && is_in_front(around.facet_lies(facets, facet))
     }
 
     /// Means of what views show that is not seen wholly or never.

@@ -3,7 +3,7 @@
 use super::blockers::Blockers;
 use super::closure::{TooLarge, place};
 use super::element::{Element, Elements};
-use super::element_row::{Effort, ElementRows};
+use super::element_row::{Effort, ElementRows, explained};
 use super::facets::Facets;
 use super::row::{Entry, PatchInfo, Row, Share};
 use super::row_space::RowSpace;
@@ -17,8 +17,8 @@ use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// How a row is computed, and how anew as long as its residue is larger than the estimates of its errors: to these parts of the tolerance, and with or without
-/// many views from near its sides.
+/// How a row is computed, and how anew as long as its residue is larger than what is allowed and the estimates of its errors: to these parts of the tolerance,
+/// and with or without many views from near its sides.
 const ATTEMPTS: [(f64, bool); 3] = [(1.0, false), (1.0, true), (0.1, true)];
 
 /// Form factors between the patches of a scene.
@@ -132,8 +132,29 @@ impl Exchange {
         Ok(())
     }
 
+    /// `F[from][to]` once more, by points on the patch that it is from and to the tolerance: what rows have comes from closed forms, or from points on the smaller of the two, and
+    /// is the same number from both. `None` if there is no way but views: if either patch has several flat convex parts, lies on another one, or has too much in front of
+    /// it, and where backs count. The cost is that of an entry.
+    ///
+    /// # Errors
+    /// If there are no such patches.
+    pub fn by_points(&self, from: usize, to: usize) -> Result<Option<Share>, ExchangeError> {
+        let count = self.patches.len();
+        if let Some(patch) = [from, to].into_iter().find(|&patch| patch >= count) {
+            return Err(ExchangeError::UnknownPatch { patch, count });
+        }
+        let [&[number], &[other]] = [from, to].map(|patch| &self.elements.of_patch[patch][..]) else {
+            return Ok(None);
+        };
+        let effort = Effort { tolerance: self.options.tolerance, towards_sides: false, is_shared: false };
+        let alone = Shared::default();
+        let rows = self.element_rows(&alone);
+        Ok(rows.by_points(number, other, effort, &mut RowSpace::new(&self.elements)))
+    }
+
     fn row_in(&self, patch: usize, shared: &Shared, space: &mut RowSpace) -> Result<Row, ExchangeError> {
         let mut failure = None;
+        let explained = explained(self.options.tolerance);
         for (part, towards_sides) in ATTEMPTS {
             // Other rows are told only once.
             let is_shared = failure.is_none();
@@ -142,7 +163,7 @@ impl Exchange {
             if row.closure_raw == 0.0 {
                 return Ok(row);
             }
-            match place(&mut row) {
+            match place(&mut row, explained) {
                 Ok(()) => {
                     row.entries.retain(|entry| entry.share.factor > 0.0);
                     return Ok(row);
@@ -154,6 +175,13 @@ impl Exchange {
         Err(ExchangeError::NotClosed { patch, residue, estimates })
     }
 
+    fn element_rows<'a>(&'a self, shared: &'a Shared) -> ElementRows<'a> {
+        let Self { facets, elements, trees, options, .. } = self;
+        let blockers = Blockers { facets, elements, trees };
+        let looker = Looker { facets, elements, trees, sides: options.sides };
+        ElementRows { blockers, shared, looker, most_views: options.most_views }
+    }
+
     /// The row before its residue is placed.
     fn raw_row(
         &self,
@@ -163,9 +191,7 @@ impl Exchange {
         space: &mut RowSpace,
     ) -> Result<Row, ExchangeError> {
         let elements = &self.elements;
-        let blockers = Blockers { facets: &self.facets, elements, trees: &self.trees };
-        let looker = Looker { facets: &self.facets, elements, trees: &self.trees, sides: self.options.sides };
-        let rows = ElementRows { blockers, shared, looker, most_views: self.options.most_views };
+        let rows = self.element_rows(shared);
         let area = elements.patches[patch].area;
         let mut shares: Vec<(u32, Share)> = Vec::new();
         for &element in &elements.of_patch[patch] {

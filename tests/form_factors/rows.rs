@@ -212,6 +212,19 @@ fn what_cannot_be_is_refused_with_a_reason() {
 }
 
 #[test]
+fn a_patch_that_is_lost_in_its_scene_is_refused_rather_than_without_area() {
+    // Of area 1, beside one that is 1e100 long.
+    let small = rectangle([0.; 3], [1., 0., 0.], [0., 1., 0.]);
+    let long = rectangle([0., 0., 1.], [1e100, 0., 0.], [0., 1., 0.]);
+    let scene = scene_of(&[small, long]);
+    let new = |plan| Exchange::new(&scene, plan, ExchangeOptions::default()).map(|_| ());
+    for plan in [PatchPlan::Polygons, PatchPlan::Objects] {
+        let polygon = PolygonId(0);
+        assert_eq!(new(plan), Err(ExchangeError::TooSmall { polygon }), "{plan:?}");
+    }
+}
+
+#[test]
 fn what_stands_on_a_patch_cuts_it_for_the_integral() {
     // A box without a bottom on a floor under a ceiling: from beneath it, all of its inside is seen, backs.
     let mut polygons = vec![rectangle([0.; 3], [1., 0., 0.], [0., 1., 0.])];

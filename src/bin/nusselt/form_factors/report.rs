@@ -3,7 +3,7 @@
 use super::certify::Proved;
 use super::reciprocity::Defects;
 use super::tally::Tally;
-use crate::summary::{Lines, Timing, number};
+use crate::summary::{Lines, Timing, number, short};
 use nusselt::io::matrix::FORM_FACTORS_SCHEMA;
 use nusselt::scene::Scene;
 use serde::Serialize;
@@ -183,11 +183,6 @@ impl<'a> Report<'a> {
         }
         lines.0
     }
-}
-
-/// How small something is.
-fn short(x: f64) -> String {
-    if x == 0.0 { "0".to_owned() } else { format!("{x:.1e}") }
 }
 
 fn in_words(defects: &Defects) -> String {
