@@ -107,7 +107,9 @@ mod tests {
         let rows: Vec<Row> = (0..patches.len()).map(|row| exchange.row(row).expect("a row")).collect();
         let check = |rows: &[Row]| {
             let mut sample = PairSample::new(patches, 0..patches.len() as u32);
-            rows.iter().for_each(|row| sample.add(row));
+            for row in rows {
+                sample.add(row);
+            }
             sample.check(&exchange, 1e-4).expect("pairs")
         };
         let right = check(&rows);
