@@ -187,7 +187,7 @@ impl Blockers<'_> {
         let SceneOrder::Boxes(bvh) = &self.facets.order else { unreachable!("views of facets are taken by boxes") };
         let hierarchy = &*bvh.hierarchy;
         let mut stack: Vec<u32> = (0..hierarchy.nodes.len().min(1) as u32).collect();
-        let mut pieces = Vec::new();
+        let mut numbers = Vec::new();
         while let Some(number) = stack.pop() {
             let node = &hierarchy.nodes[number as usize];
             if !may_meet(node.bounds.low, node.bounds.high) {
@@ -196,16 +196,15 @@ impl Blockers<'_> {
             match &node.content {
                 Content::Boxes(halves) => stack.extend(halves),
                 Content::Panels(range) => {
-                    for &panel in &hierarchy.order[range.start as usize..range.end as usize] {
-                        hierarchy.panels.pieces(panel, &mut Vec::new(), |piece| pieces.push(piece));
-                    }
+                    let facets = self.facets.of_panels(range.clone()).iter().copied();
+                    numbers.extend(facets.filter(|&facet| {
+                        let [low, high] = self.facets.all[facet as usize].bounds;
+                        may_meet(low, high)
+                    }));
                 }
             }
         }
-        let scene = self.facets.order.scene();
-        let mut numbers: Vec<u32> = pieces.into_iter().map(|piece| scene.piece(piece).polygon().0).collect();
         numbers.sort_unstable();
-        numbers.dedup();
         numbers
     }
 

@@ -6,6 +6,7 @@
 //! `docs/form-factors.md` tells how, with what accuracy and at what cost.
 
 mod blockers;
+mod bodies;
 mod closure;
 mod contacts;
 mod contour;
@@ -27,6 +28,7 @@ mod points;
 mod reciprocity;
 mod row;
 mod row_space;
+mod screens;
 mod seen;
 mod shaft;
 mod shape;

@@ -38,6 +38,20 @@ impl Plane {
     }
 }
 
+impl Plane {
+    /// True if all points of a box are certainly on the other side than this one.
+    ///
+    /// The filter of [`Self::side`] with the box's farthest corner, and as much again for rounding of its centre and of what it reaches out.
+    fn is_beyond(&self, side: Sign, centre: DVec3, half: DVec3) -> bool {
+        let r = centre - self.points[0];
+        let height = self.normal.dot(r);
+        let reach = self.normal.abs().dot(half);
+        let bound = 20.0 * U * self.permanent.dot(r.abs() + half);
+        let below = if side == Sign::Positive { -height } else { height };
+        bound > 1e-180 && bound < 1e120 && below - reach > bound
+    }
+}
+
 /// The sign of `orient3d`, where zero is likely.
 fn exact_side([a, b, c]: [DVec3; 3], p: DVec3) -> Sign {
     if is_on_evidently([a, b, c], p) { Sign::Zero } else { orient3d(a, b, c, p) }
@@ -144,9 +158,12 @@ impl Shaft {
         Self { planes, low, high }
     }
 
-    /// True if a box may have points inside of the shaft's own box.
+    /// False if a box is certainly outside of the shaft's own box, or of one of its planes.
     pub(super) fn may_meet(&self, low: DVec3, high: DVec3) -> bool {
-        self.low.cmple(high).all() && self.high.cmpge(low).all()
+        let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+        self.low.cmple(high).all()
+            && self.high.cmpge(low).all()
+            && !self.planes.iter().any(|(plane, side)| plane.is_beyond(*side, centre, half))
     }
 
     /// True if a polygon is certainly outside, though it may touch.
@@ -295,7 +312,7 @@ impl Blocker {
                     let sign = side(line, corner);
                     all_outside &= sign == -inside || is_exact && sign.is_zero();
                     all_inside &= sign == inside || is_exact && sign.is_zero();
-                    if !all_inside && !all_outside {
+                    if !all_outside && !(hides && all_inside) {
                         break 'lines;
                     }
                 }
