@@ -4,13 +4,16 @@ use super::facets::Facets;
 use super::mesh;
 use super::placement::Placement;
 use super::row::{PatchInfo, PatchShape};
-use super::shape::{Frame, area, centre, sides, turn};
+use super::shape::{Frame, centre, double_area, sides, turn};
 use super::{ExchangeError, PatchPlan};
 use crate::scene::{PieceRef, PolygonId, Scene};
 use glam::{DVec2, DVec3};
 
 /// The normals of a patch whose mean is shorter than this have no direction together.
 const CLOSED: f64 = 1e-9;
+
+/// Parts of a scene of about 1 across are not smaller: products of two areas are numbers.
+const LEAST_AREA: f64 = 1e-140;
 
 /// A flat convex part of a patch.
 pub(super) struct Element {
@@ -61,17 +64,17 @@ impl Elements {
             match plan {
                 PatchPlan::Polygons => {
                     let patch = found.patch(name.to_owned(), polygon.id())?;
-                    polygon.pieces().for_each(|piece| {
-                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement));
-                    });
+                    for piece in polygon.pieces() {
+                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement))?;
+                    }
                 }
                 PatchPlan::Objects => {
                     let known = of_object[polygon.object().index()];
                     let patch = known.map_or_else(|| found.patch(name.to_owned(), polygon.id()), Ok)?;
                     of_object[polygon.object().index()] = Some(patch);
-                    polygon.pieces().for_each(|piece| {
-                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement));
-                    });
+                    for piece in polygon.pieces() {
+                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement))?;
+                    }
                 }
                 PatchPlan::Mesh { longest_edge } => {
                     for piece in polygon.pieces() {
@@ -84,7 +87,7 @@ impl Elements {
                             .map_err(|mesh::TooFine| ExchangeError::TooFine { polygon: polygon.id() })?;
                         for part in parts {
                             let patch = found.patch(name.to_owned(), polygon.id())?;
-                            found.add(patch, facet, part);
+                            found.add(patch, facet, part)?;
                         }
                     }
                 }
@@ -117,12 +120,16 @@ impl Elements {
         (area > 0.0).then_some(PatchShape { center, normal, pieces })
     }
 
-    fn add(&mut self, patch: u32, facet: u32, ring: Vec<DVec3>) {
+    fn add(&mut self, patch: u32, facet: u32, ring: Vec<DVec3>) -> Result<(), ExchangeError> {
         let frame = &self.frames[facet as usize];
         let flat: Vec<DVec2> = ring.iter().map(|&p| frame.flat(p)).collect();
-        let area = area(&ring);
-        if area == 0.0 {
-            return;
+        let twice_area = double_area(&ring);
+        let area = 0.5 * twice_area.length();
+        if twice_area == DVec3::ZERO {
+            return Ok(());
+        }
+        if area < LEAST_AREA {
+            return Err(ExchangeError::TooSmall { polygon: self.patches[patch as usize].polygon });
         }
         let centre = centre(&ring);
         let element = Element {
@@ -143,6 +150,7 @@ impl Elements {
         self.of_patch[patch as usize].push(number);
         self.of_facet[facet as usize].push(number);
         self.patches[patch as usize].area += area;
+        Ok(())
     }
 }
 
