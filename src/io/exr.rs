@@ -1,17 +1,18 @@
 //! Pictures as EXR.
 
+use crate::io::number::single;
 use crate::picture::Picture;
 use exr::prelude::{Encoding, Image, SpecificChannels, Vec2, WritableImage};
 use std::io::{self, Seek, Write};
 
-/// Writes a picture of linear colours as `OpenEXR`, with 32 bits a channel, losslessly compressed: red, green and blue as they are, however bright.
+/// Writes a picture of linear colours as `OpenEXR`, with 32 bits a channel, losslessly compressed: red, green and blue as they are, up to the largest such number (3e38).
 ///
 /// # Errors
 /// Those of `out`.
 pub fn write_exr(picture: &Picture, out: impl Write + Seek) -> io::Result<()> {
     let size = picture.size();
     let pixel = |at: Vec2<usize>| {
-        let [red, green, blue] = picture.pixel(at.x() as u32, at.y() as u32).to_array().map(|x| x as f32);
+        let [red, green, blue] = picture.pixel(at.x() as u32, at.y() as u32).to_array().map(single);
         (red, green, blue)
     };
     let channels = SpecificChannels::rgb(pixel);

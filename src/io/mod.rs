@@ -94,6 +94,8 @@ pub struct Loaded {
     pub warnings: Vec<String>,
     /// The files that were read: the scene first, then its material libraries. Results must not replace them.
     pub files: Vec<PathBuf>,
+    /// Where each material of the scene is defined, as messages start: `room.mtl:7`; the name of the file where that is not known.
+    pub material_places: Vec<String>,
 }
 
 /// How a scene is read.

@@ -14,19 +14,19 @@ pub struct Rendered {
     /// How many points were shaded: one for each polygon in each pixel where it is seen.
     pub points: usize,
     /// The largest of red, green and blue of what each pixel's surfaces reflect, without what they emit; NaN where none is seen.
-    reflected: Vec<f32>,
+    reflected: Vec<f64>,
 }
 
 impl Rendered {
     /// A factor for radiances that brings what is reflected to at most 0.8 in 95% of the pixels that show a surface; 1 if nothing is reflected.
     pub fn auto_exposure(&self) -> f64 {
-        let mut found: Vec<f32> = self.reflected.iter().copied().filter(|radiance| !radiance.is_nan()).collect();
+        let mut found: Vec<f64> = self.reflected.iter().copied().filter(|radiance| !radiance.is_nan()).collect();
         if found.is_empty() {
             return 1.0;
         }
         let at = (found.len() - 1) * 95 / 100;
-        let (_, &mut radiance, _) = found.select_nth_unstable_by(at, f32::total_cmp);
-        if radiance > 0.0 { 0.8 / f64::from(radiance) } else { 1.0 }
+        let (_, &mut radiance, _) = found.select_nth_unstable_by(at, f64::total_cmp);
+        if radiance > 0.0 { (0.8 / radiance).min(f64::MAX) } else { 1.0 }
     }
 }
 
@@ -41,7 +41,7 @@ const BATCH: usize = 1024;
 /// on the number of threads. Memory: the picture, the contour image, and what a thousand tiles of 16 x 16 pixels show.
 ///
 /// # Errors
-/// If the picture would have no pixels or too many, if there is no view of the camera, or if a point cannot be shaded.
+/// If the picture would have no pixels or too many, if there is no view of the camera, if a point cannot be shaded, or if a radiance is not finite.
 pub fn render(
     shader: &Shader,
     eye: DVec3,
@@ -50,7 +50,7 @@ pub fn render(
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Rendered, RenderError> {
     let mut picture = Picture::new(size, DVec3::ZERO)?;
-    let mut reflected = vec![f32::NAN; picture.pixels().len()];
+    let mut reflected = vec![f64::NAN; picture.pixels().len()];
     let image = shader.order().view(&Viewpoint::free(eye), &Domain::Frustum(*camera));
     let image = image.map_err(|source| RenderError::View { from: "the camera", source })?;
     let Some(parts) = PixelParts::new(&image, size)? else { unreachable!("it is the image of a camera") };
@@ -80,7 +80,7 @@ pub fn render(
 
 /// The pixels of a tile: column, row, radiance, and the largest of what is reflected.
 struct Tile {
-    pixels: Vec<(u32, u32, DVec3, f32)>,
+    pixels: Vec<(u32, u32, DVec3, f64)>,
     points: usize,
 }
 
@@ -92,6 +92,7 @@ impl Tile {
             if failure.is_none() {
                 let number = u64::from(y) << 32 | u64::from(x);
                 match shade(shader, parts, number, of_pixel) {
+                    Ok((colour, _)) if !colour.is_finite() => failure = Some(RenderError::TooBright { x, y }),
                     Ok((colour, reflected)) => tile.pixels.push((x, y, colour, reflected)),
                     Err(error) => failure = Some(error),
                 }
@@ -108,7 +109,7 @@ fn shade(
     parts: &PixelParts<'_>,
     number: u64,
     of_pixel: &[PixelPart],
-) -> Result<(DVec3, f32), RenderError> {
+) -> Result<(DVec3, f64), RenderError> {
     let (mut sum, mut reflected, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for (k, part) in of_pixel.iter().enumerate() {
         let cell = parts.image().cell(part.cell);
@@ -125,5 +126,5 @@ fn shade(
         reflected += from_light * part.area;
         area += part.area;
     }
-    Ok((sum, if area > 0.0 { (reflected / area).max_element() as f32 } else { f32::NAN }))
+    Ok((sum, if area > 0.0 { (reflected / area).max_element() } else { f64::NAN }))
 }

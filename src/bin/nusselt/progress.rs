@@ -1,6 +1,7 @@
 //! A line on stderr that tells how far the work is.
 
 use std::io::{IsTerminal, Write, stderr};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Shown if stderr is a terminal; gone when it is dropped.
@@ -47,6 +48,21 @@ impl Progress {
         };
         let left = total.saturating_sub(self.done) as f64 / rate.max(1e-9);
         format!("{} of {total} {}, {rate:.1}/s, {left:.0} s left{note}", self.done, self.what)
+    }
+}
+
+/// The same, told by several threads.
+pub(crate) struct SharedProgress(Mutex<Progress>);
+
+impl SharedProgress {
+    /// As [`Progress::new`].
+    pub(crate) fn new(what: &'static str, total: Option<usize>, quiet: bool) -> Self {
+        Self(Mutex::new(Progress::new(what, total, quiet)))
+    }
+
+    /// So many more are done.
+    pub(crate) fn add(&self, count: usize) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).add(count);
     }
 }
 

@@ -7,23 +7,23 @@ mod path;
 use crate::args::{Common, Loading, parse_direction, parse_fov, parse_point};
 use crate::brdf::{BrdfSpec, GRAMMAR};
 use crate::failure::Failure;
-use crate::input::{build_order, load};
+use crate::input::{build_order, load_materials};
 use crate::lighting::Lights;
+use crate::materials::{Materials, Numbered};
 use crate::output::{print, print_json};
-use crate::progress::Progress;
+use crate::progress::SharedProgress;
 use crate::radiosity::parse_size;
 use crate::summary::{Lines, Timing, number};
 use glam::{DVec3, UVec2};
 use indirect::{Interreflection, Solved};
-use nusselt::brdf::{Brdf, Light};
+use nusselt::brdf::{Brdf, Light, ReflectError};
 use nusselt::contour::SceneOrder;
 use nusselt::render::{RenderError, Rendered, Shader, ShaderOptions, Shading, render};
-use nusselt::scene::Scene;
+use nusselt::scene::{Material, Scene};
 use outputs::Output;
 use path::Camera;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 const EXAMPLES: &str = "\
@@ -136,15 +136,15 @@ impl Render {
         let lighting = self.lights.lighting(self.two_sided)?;
         let cameras = self.cameras()?;
         let files = outputs::files(&self.output, self.frames.as_deref(), cameras.len())?;
-        let (scene, load_s) = load(&self.scene, files.iter().map(PathBuf::as_path), &self.loading, common)?;
-        let is_dark = !scene.materials().iter().any(nusselt::scene::Material::is_emitter)
+        let (scene, materials, load_s) = load_materials(&self.scene, files.iter().map(PathBuf::as_path), &self.loading, common)?;
+        let is_dark = !scene.materials().iter().any(Material::is_emitter)
             && lighting.sky.is_none()
             && lighting.lights.is_empty();
         if is_dark {
             let advice = "give it --sky, --point-light or --directional-light";
             common.warn(&format!("{}: nothing emits light, so the picture is black; {advice}", self.scene.display()));
         }
-        let brdfs = self.brdfs(&scene, common)?;
+        let brdfs = self.brdfs(&scene, &materials, common)?;
         let (order, order_s) = self.order(&scene)?;
         let options = ShaderOptions { shading: self.shading, mirrors: self.mirrors, ..ShaderOptions::default() };
         let shader = Shader::with_brdfs(order, brdfs, lighting, options).map_err(|error| self.refused(&error))?;
@@ -152,7 +152,7 @@ impl Render {
         let mut exposure = self.exposure;
         let (mut frame_ms, mut points) = (Vec::new(), 0);
         let pixels = (self.size.x as usize * self.size.y as usize).saturating_mul(cameras.len());
-        let progress = Mutex::new(Progress::new("pixels", Some(pixels), common.quiet));
+        let progress = SharedProgress::new("pixels", Some(pixels), common.quiet);
         for (k, camera) in cameras.iter().enumerate() {
             let start = Instant::now();
             let rendered = self.render(&shader, camera, &progress)?;
@@ -183,7 +183,7 @@ impl Render {
     }
 
     /// The BRDF of each material.
-    fn brdfs(&self, scene: &Scene, common: &Common) -> Result<Vec<Box<dyn Brdf>>, Failure> {
+    fn brdfs(&self, scene: &Scene, places: &Materials, common: &Common) -> Result<Vec<Box<dyn Brdf>>, Failure> {
         let materials = scene.materials();
         for (name, _) in &self.brdf {
             if !materials.iter().any(|material| material.name == *name) {
@@ -192,31 +192,30 @@ impl Render {
                 return Err(Failure::Usage(format!("--brdf: there is no material {name:?}; there are {known}")));
             }
         }
-        let brdf = |material: &nusselt::scene::Material| {
-            let given = self.brdf.iter().rev().find(|(name, _)| *name == material.name);
-            if let Some((_, spec)) = given {
-                return spec.brdf(Some(material), &self.scene);
-            }
-            if material.reflects_too_much() {
-                let what = "Kd and Ks sum to more than 1 in some colour; there both are divided by their sum";
-                common.warn(&format!("{}: material {:?}: {what}", self.scene.display(), material.name));
-            }
-            material
-                .brdf()
-                .map_err(|error| Failure::about(&self.scene, &format_args!("material {:?}: {error}", material.name)))
+        let given = |material: &Material| {
+            let named = self.brdf.iter().rev().find(|(name, _)| *name == material.name);
+            named.map(|(_, spec)| spec)
         };
-        materials.iter().map(brdf).collect()
+        // Interreflection goes by what materials say, whatever they are given.
+        let matters = |material: &Material| {
+            !self.interreflection.direct || given(material).is_none_or(BrdfSpec::has_material)
+        };
+        places.check(scene, common, matters)?;
+        let brdf = |(number, material): (usize, &Material)| {
+            let numbered = Numbered { materials: places, scene, number };
+            given(material).map_or_else(|| numbered.brdf(), |spec| spec.brdf(Some(numbered)))
+        };
+        materials.iter().enumerate().map(brdf).collect()
     }
 
-    fn render(&self, shader: &Shader, camera: &Camera, progress: &Mutex<Progress>) -> Result<Rendered, Failure> {
-        let done = |count| progress.lock().unwrap_or_else(PoisonError::into_inner).add(count);
-        render(shader, camera.eye, &camera.frustum, self.size, &done)
+    fn render(&self, shader: &Shader, camera: &Camera, progress: &SharedProgress) -> Result<Rendered, Failure> {
+        render(shader, camera.eye, &camera.frustum, self.size, &|count| progress.add(count))
             .map_err(|error| camera.place(self.refused(&error)))
     }
 
     fn refused(&self, error: &RenderError) -> Failure {
         match error {
-            RenderError::Reflect { source: nusselt::brdf::ReflectError::BadLight(light), .. } => {
+            RenderError::Light(ReflectError::BadLight(light)) => {
                 let option = if matches!(light, Light::Point { .. }) { "--point-light" } else { "--directional-light" };
                 Failure::Usage(format!("{option}: {error}"))
             }
