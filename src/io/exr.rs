@@ -35,8 +35,10 @@ mod tests {
     #[test]
     fn colours_come_back_as_they_are() {
         let size = UVec2::new(5, 3);
-        let mut picture = Picture::new(size, DVec3::ZERO).unwrap();
-        picture.set(4, 1, DVec3::new(17.0, 0.25, 1e-3));
+        let mut pixels = vec![DVec3::ZERO; 15];
+        pixels[9] = DVec3::new(17.0, 0.25, 1e-3);
+        pixels[10] = DVec3::splat(1e300);
+        let picture = Picture::of_pixels(size, pixels).unwrap();
         let mut bytes = Vec::new();
         write_exr(&picture, Cursor::new(&mut bytes)).unwrap();
         let reader = exr::prelude::read().no_deep_data().largest_resolution_level();
@@ -50,7 +52,7 @@ mod tests {
         let pixels = &image.layer_data.channel_data.pixels;
         assert_eq!(pixels.len(), 15);
         for (found, expected) in pixels.iter().zip(picture.pixels()) {
-            assert_eq!(Vec3::from(*found), expected.as_vec3());
+            assert_eq!(Vec3::from(*found), expected.as_vec3().min(Vec3::MAX));
         }
     }
 }

@@ -70,7 +70,7 @@ pub use frames::{FrameLine, parse_frames, read_frames};
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use merl::{parse_merl, read_merl, write_merl};
 #[cfg(feature = "png")]
-pub use png::{contour_picture, write_png};
+pub use png::{PngRows, contour_picture, write_png, write_png_rows};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
 pub use sh::{parse_sh, read_sh, write_sh};

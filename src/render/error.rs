@@ -44,7 +44,9 @@ pub enum RenderError {
     #[error(transparent)]
     Light(ReflectError),
     /// A radiance is more than numbers hold.
-    #[error("the light in column {x}, row {y} of the picture is brighter than numbers hold (1e308); make emissions and lights smaller")]
+    #[error(
+        "the light in column {x}, row {y} of the picture is brighter than numbers hold (1e308); make emissions and lights smaller"
+    )]
     TooBright {
         /// The pixel's column, from 0 at the left.
         x: u32,

@@ -30,15 +30,24 @@ impl Rendered {
     }
 }
 
+/// Rows of a picture, from left to right and from the top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Band {
+    /// Radiances.
+    pub radiances: Vec<DVec3>,
+    /// As [`Rendered`] has them.
+    reflected: Vec<f64>,
+}
+
 /// The sides of the squares of pixels that threads share.
 const TILE: u32 = 16;
-/// So many of them are worked on before their pixels are put into the picture.
-const BATCH: usize = 1024;
+/// Rows of tiles are worked on together until they are so many, or all.
+const BATCH: u32 = 1024;
 
 /// Renders what a camera at `eye` sees. `done` is told from any thread how many more pixels are.
 ///
 /// Which polygon is seen in what part of a pixel is exact; each is shaded at one point of that part ([`PixelPart::direction`]), and the pixel is the sum of areas times radiances. The result does not depend
-/// on the number of threads. Memory: the picture, the contour image, and what a thousand tiles of 16 x 16 pixels show.
+/// on the number of threads. Memory: 32 bytes for each pixel, and what [`render_bands`] takes.
 ///
 /// # Errors
 /// If the picture would have no pixels or too many, if there is no view of the camera, if a point cannot be shaded, or if a radiance is not finite.
@@ -49,33 +58,60 @@ pub fn render(
     size: UVec2,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Rendered, RenderError> {
-    let mut picture = Picture::new(size, DVec3::ZERO)?;
-    let mut reflected = vec![f64::NAN; picture.pixels().len()];
+    Picture::check_size(size)?;
+    let mut whole = Band::default();
+    let points = render_bands(shader, eye, camera, size, done, |band| {
+        whole.radiances.extend(band.radiances);
+        whole.reflected.extend(band.reflected);
+        Ok::<(), RenderError>(())
+    })?;
+    Ok(Rendered { picture: Picture::of_pixels(size, whole.radiances)?, points, reflected: whole.reflected })
+}
+
+/// The same, but rows are given away as soon as they are made, some at a time, from the top; for pictures that are too large to keep. Gives the number of points that were shaded. Memory: the contour image, some
+/// 16 x 16 x 1024 pixels, or 16 rows if those are more, and what is seen in them.
+///
+/// # Errors
+/// As [`render`], and those of `take`.
+pub fn render_bands<E: From<RenderError>>(
+    shader: &Shader,
+    eye: DVec3,
+    camera: &Frustum,
+    size: UVec2,
+    done: &(dyn Fn(usize) + Sync),
+    mut take: impl FnMut(Band) -> Result<(), E>,
+) -> Result<usize, E> {
     let image = shader.order().view(&Viewpoint::free(eye), &Domain::Frustum(*camera));
     let image = image.map_err(|source| RenderError::View { from: "the camera", source })?;
-    let Some(parts) = PixelParts::new(&image, size)? else { unreachable!("it is the image of a camera") };
-    let tiles: Vec<UVec2> = (0..size.y.div_ceil(TILE))
-        .flat_map(|y| (0..size.x.div_ceil(TILE)).map(move |x| UVec2::new(x, y) * TILE))
-        .collect();
+    let parts = PixelParts::new(&image, size).map_err(RenderError::from)?;
+    let Some(parts) = parts else { unreachable!("it is the image of a camera") };
+    let columns = size.x.div_ceil(TILE);
+    let rows = (BATCH / columns).max(1) * TILE;
     let mut points = 0;
-    for batch in tiles.chunks(BATCH) {
-        let found = parallel::map(batch.to_vec(), |low| {
+    for top in (0..size.y).step_by(rows as usize) {
+        let bottom = top.saturating_add(rows).min(size.y);
+        let lows = (top..bottom).step_by(TILE as usize);
+        let lows = lows.flat_map(|y| (0..columns).map(move |x| UVec2::new(x * TILE, y)));
+        let tiles = parallel::map(lows.collect(), |low| {
             let tile = Tile::new(shader, &parts, low);
             if let Ok(tile) = &tile {
                 done(tile.pixels.len());
             }
             tile
         });
-        for tile in found {
+        let count = size.x as usize * (bottom - top) as usize;
+        let mut band = Band { radiances: vec![DVec3::ZERO; count], reflected: vec![f64::NAN; count] };
+        for tile in tiles {
             let tile = tile?;
             points += tile.points;
             for (x, y, colour, largest) in tile.pixels {
-                reflected[y as usize * size.x as usize + x as usize] = largest;
-                picture.set(x, y, colour);
+                let at = (y - top) as usize * size.x as usize + x as usize;
+                (band.radiances[at], band.reflected[at]) = (colour, largest);
             }
         }
+        take(band)?;
     }
-    Ok(Rendered { picture, points, reflected })
+    Ok(points)
 }
 
 /// The pixels of a tile: column, row, radiance, and the largest of what is reflected.

@@ -29,6 +29,12 @@ impl Progress {
         self.note = note;
     }
 
+    /// One more is done, of so many as turn out to be.
+    pub(crate) fn add_of(&mut self, total: usize) {
+        self.total = Some(total);
+        self.add(1);
+    }
+
     /// So many more are done.
     pub(crate) fn add(&mut self, count: usize) {
         self.done += count;
@@ -85,7 +91,10 @@ mod tests {
         progress.add(5);
         assert_eq!(progress.line(10.0), "25 of 100 views, 2.5/s, 30 s left");
         assert!(progress.shown.is_none(), "quiet");
+        progress.add_of(52);
+        assert_eq!(progress.line(13.0), "26 of 52 views, 2.0/s, 13 s left");
         progress.total = None;
+        progress.done -= 1;
         assert_eq!(progress.line(10.0), "25 views, 2.5/s");
     }
 }

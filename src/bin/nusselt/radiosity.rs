@@ -124,8 +124,7 @@ impl Radiosity {
         let files: Vec<&Path> =
             self.output.iter().map(|output| output.path.as_path()).chain(self.state.as_deref()).collect();
         check_once(files.iter().copied())?;
-        let (scene, materials, load_s) =
-            load_materials(&self.scene, files.iter().copied(), &self.loading, common)?;
+        let (scene, materials, load_s) = load_materials(&self.scene, files.iter().copied(), &self.loading, common)?;
         materials.check(&scene, common, |_| true)?;
         let (patches, of) = self.mesh(&scene)?;
         let start = Instant::now();

@@ -149,7 +149,8 @@ mod tests {
     fn all_faults_are_named_by_line() {
         assert_eq!(faults(""), "p.csv: it has no points; a line is x y z nx ny nz [polygon]");
         assert_eq!(faults("x y z nx ny nz"), faults(""));
-        let semicolons = "p.csv:1: x y z nx ny nz [polygon] are 6 or 7 fields, not 1; separate them by commas or blanks";
+        let semicolons =
+            "p.csv:1: x y z nx ny nz [polygon] are 6 or 7 fields, not 1; separate them by commas or blanks";
         assert_eq!(faults("0.5;-2;3;0;0;1\n1 2 3 0 0 1\n"), semicolons);
         let text = "1 2 3\n1,2,3,0,,1\n1 2 3 0 0 inf\n1 2 3 0 0 0\n1 2 3 0 0 1 -2\n1 2 3 0 0 1 2 3\nx 2 3 0 0 1\n0 0 0 0 0 1\n";
         let expected = "p.csv:1: x y z nx ny nz [polygon] are 6 or 7 fields, not 3\n\

@@ -115,8 +115,7 @@ impl Reflect {
         let number = viewpoint.surface().map(|(polygon, _)| scene.polygon(polygon).material_id().index());
         let own = number.filter(|_| self.brdf.has_material()).map(|number| &scene.materials()[number]);
         materials.check(&scene, common, |material| own.is_some_and(|own| std::ptr::eq(own, material)))?;
-        let brdf =
-            self.brdf.brdf(number.map(|number| Numbered { materials: &materials, scene: &scene, number }))?;
+        let brdf = self.brdf.brdf(number.map(|number| Numbered { materials: &materials, scene: &scene, number }))?;
         let (order, order_s) = build_order(&self.scene, &scene, &self.order, way(self.way, &self.order))?;
         let start = Instant::now();
         let image = order.view(&viewpoint, &domain).map_err(|error| Failure::about(&self.scene, &error))?;

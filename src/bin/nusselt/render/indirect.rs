@@ -96,9 +96,8 @@ impl Interreflection {
         if !self.gather && shading == Shading::Contour {
             let options = SurfaceOptions { detail: self.detail, depth: self.depth, ..SurfaceOptions::default() };
             let views = SharedProgress::new("views from corners", None, common.quiet);
-            indirect = indirect
-                .interpolated_watched(&options, &|count| views.add(count))
-                .map_err(|error| failed(&error))?;
+            indirect =
+                indirect.interpolated_watched(&options, &|count| views.add(count)).map_err(|error| failed(&error))?;
         }
         let solved = Solved {
             patches: patches.polygon_count(),
