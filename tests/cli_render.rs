@@ -175,7 +175,7 @@ fn materials_that_reflect_too_much_are_told_by_file_and_line() {
     ];
     let with = |kd: &str, ks: &str| {
         let lamp = "newmtl lamp\nKd 0.5 0.5 0.5\nKe 1 1 1\n";
-        folder.write("lit.mtl", &format!("{lamp}# below\nnewmtl bright\nKd {kd}\nKs {ks}\nNs 9\n"));
+        folder.write("lit.mtl", format!("{lamp}# below\nnewmtl bright\nKd {kd}\nKs {ks}\nNs 9\n"));
     };
     let warning = "lit.mtl:5: material \"bright\": Kd and Ks sum to more than 1";
     for (kd, ks, divided) in [("0.9 0.9 0.9", "0.6 0.6 0.6", "0.6 0.6 0.6"), ("1.2 0.5 0.5", "0 0 0", "1 0.5 0.5")] {
@@ -212,11 +212,11 @@ fn very_bright_scenes_are_not_black() {
     let folder = Folder::new("render-bright");
     let faces =
         "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 0 0 3\nv 4 0 3\nv 4 4 3\nv 0 4 3\nf 1 2 3 4\nusemtl lamp\nf 8 7 6 5\n";
-    folder.write("lit.obj", &format!("mtllib lit.mtl\n{faces}"));
+    folder.write("lit.obj", format!("mtllib lit.mtl\n{faces}"));
     for direct in ["--direct", "--patch 2"] {
         let line = format!("render lit.obj --eye -3,2,2 --look-at 2,2,1 --fov 60 --size 8x8 {direct}");
         let pixels = |glow: &str| {
-            folder.write("lit.mtl", &format!("newmtl lamp\nKd 0.5 0.5 0.5\nKe {glow} {glow} {glow}\n"));
+            folder.write("lit.mtl", format!("newmtl lamp\nKd 0.5 0.5 0.5\nKe {glow} {glow} {glow}\n"));
             folder.run(&format!("{line} -o x.png"), 0);
             png(&folder.path("x.png")).1
         };

@@ -344,6 +344,34 @@ fn a_light_on_a_surface_lights_all_of_it_but_its_own_point() {
     }
 }
 
+#[test]
+fn a_lamp_in_line_with_a_point_lights_nothing_there() {
+    // One that stands on the floor, and one in the floor's own plane.
+    let upright = [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 1.0], [0.0, -1.0, 1.0]];
+    let face = vec![vec![0, 1, 2, 3]];
+    let scene = Scene::builder()
+        .mesh(&square([-4.0, -4.0], [4.0, 4.0], 0.0), &face, material("floor", RHO, 0.0))
+        .mesh(&upright, &face, material("lamp", 0.0, GLOW))
+        .mesh(&square([4.0, -1.0], [6.0, 1.0], 0.0), &face, material("lamp", 0.0, GLOW))
+        .build()
+        .expect("a scene");
+    for options in [Shading::Contour, Shading::Hemicube { resolution: 16 }] {
+        let shader = shader(&scene, options);
+        let at = |x: f64, y: f64| shader.reflected(&floor_spot(x, y), DVec3::Z, 0).expect("shaded").x;
+        // In its plane beside it, at its corners, on its lower edge, behind it, and beside the other one; then before it.
+        for [x, y] in [[0.0, 2.0], [0.0, 1.0], [0.0, -1.0], [0.0, 0.3], [-1.0, 0.2], [4.0, 0.0], [4.0, 1.0]] {
+            let found = at(x, y);
+            // On its edge or corner what is seen of it depends on how the point is rounded.
+            let is_on_it = x == 0.0 && y.abs() <= 1.0;
+            let is_lit = x > 0.0;
+            assert!(found.is_finite() && (is_on_it || (found > 0.0) == is_lit), "{options:?} {x} {y}: {found}");
+        }
+        let camera = Frustum::new(DVec3::new(0.0, 1.0, -1.0), DVec3::Z, 60.0, 1.0).expect("a camera");
+        let rendered = render(&shader, DVec3::new(0.0, -3.0, 1.5), &camera, UVec2::new(9, 9), &|_| ());
+        assert!(rendered.expect("a picture").picture.pixels().iter().all(|pixel| pixel.is_finite()));
+    }
+}
+
 /// Below a hood that is open at its bottom, on whole patches of the floor.
 #[test]
 fn what_is_seen_inside_of_a_hood_has_no_light_from_outside() {

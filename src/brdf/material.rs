@@ -26,11 +26,11 @@ impl Material {
             return Ok(Box::new(MetallicRoughness::try_from(surface)?));
         }
         let [matt, gloss] = self.reflectances()?;
-        let (matt, gloss) = (Lambert::new(matt)?, Phong::new(gloss, self.exponent)?);
-        if self.specular == [0.0; 3] {
-            return Ok(Box::new(matt));
+        let parts = (Lambert::new(matt)?, Phong::new(gloss, self.exponent)?);
+        if gloss == DVec3::ZERO {
+            return Ok(Box::new(parts.0));
         }
-        let parts: [Box<dyn Brdf>; 2] = [Box::new(matt), Box::new(gloss)];
+        let parts: [Box<dyn Brdf>; 2] = [Box::new(parts.0), Box::new(parts.1)];
         Ok(Box::new(Sum::new(parts.into())))
     }
 
