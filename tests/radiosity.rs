@@ -5,7 +5,7 @@ use nusselt::contour::SceneOrder;
 use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, mesh_scene};
 use nusselt::radiosity::{Gather, RadiosityError, Solver, SolverOptions, SolverState, Surface, SurfaceOptions};
 use nusselt::samples::{Kind, cornell_box, generate};
-use nusselt::scene::{Material, PolygonId, Scene};
+use nusselt::scene::{Material, MetallicRoughness, PolygonId, Scene};
 use std::f64::consts::PI;
 
 fn material(diffuse: f64, emission: f64) -> Material {
@@ -88,12 +88,22 @@ fn what_stands_on_a_floor_does_not_darken_it() {
         let is_bottom = position.z == 0.0 && (position - under).abs().max_element() < 0.31;
         assert!((radiosity.x / expected - 1.0).abs() < bound || is_bottom, "{radiosity} at {position}");
     }
-    // Of the floor those too that are below the block.
-    let floor = surface.triangles.iter().zip(&surface.patches).filter(|(_, patch)| of[patch.index()] == PolygonId(0));
-    for corner in floor.flat_map(|(triangle, _)| triangle) {
-        let radiosity = surface.radiosity[*corner as usize];
-        assert!((radiosity.x / expected - 1.0).abs() < bound, "{radiosity} at {}", surface.positions[*corner as usize]);
+    // The floor below the block has what it emits into it: seen from inside, nothing of what is outside.
+    let mut below = 0;
+    for (triangle, &patch) in surface.triangles.iter().zip(&surface.patches) {
+        if of[patch.index()] == PolygonId(0) {
+            below += usize::from(patch == covered);
+            let (expected, bound) = if patch == covered { (PI * emission, 1e-12) } else { (expected, bound) };
+            for corner in triangle {
+                let (at, found) = (surface.positions[*corner as usize], surface.radiosity[*corner as usize]);
+                assert!((found.x / expected - 1.0).abs() < bound, "{found} at {at}");
+            }
+        }
     }
+    assert!(below >= 2);
+    // No corner is left over.
+    let used: std::collections::HashSet<&u32> = surface.triangles.iter().flatten().collect();
+    assert_eq!(used.len(), surface.positions.len());
 }
 
 #[test]
@@ -206,7 +216,9 @@ fn what_cannot_be_solved_is_refused() {
         let exchange = exchange(&scene, 1e-3);
         Solver::new(&scene, &exchange, SolverOptions::default()).map(|solver| solver.radiosity().len())
     };
-    assert!(matches!(made(material(1.5, 0.0), material(0.5, 1.0)), Err(RadiosityError::BadReflectance { .. })));
+    let surface = MetallicRoughness { base_colour: [1.5; 3], metallic: 0.0, roughness: 1.0 };
+    let bad = Material { metallic_roughness: Some(surface), ..material(1.5, 0.0) };
+    assert!(matches!(made(bad, material(0.5, 1.0)), Err(RadiosityError::BadMaterial { polygon: PolygonId(0), .. })));
     assert!(matches!(made(material(0.5, 0.0), material(0.5, 0.0)), Err(RadiosityError::Dark)));
     let scene = hollow(material(1.0, 0.0), material(1.0, 1.0));
     let exchange = exchange(&scene, 1e-2);

@@ -57,14 +57,26 @@ impl Indirect {
     ///
     /// # Errors
     /// As [`Surface::new`].
-    pub fn interpolated(mut self, options: &SurfaceOptions) -> Result<Self, RadiosityError> {
+    pub fn interpolated(self, options: &SurfaceOptions) -> Result<Self, RadiosityError> {
+        self.interpolated_watched(options, &|_| ())
+    }
+
+    /// The same; `done` is told from any thread how many more views are made.
+    ///
+    /// # Errors
+    /// As [`Surface::new`].
+    pub fn interpolated_watched(
+        mut self,
+        options: &SurfaceOptions,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Result<Self, RadiosityError> {
         let count = self.patches.polygon_count();
         let reflected: Vec<DVec3> = self.radiosity.iter().zip(&self.emission).map(|(&b, &e)| b - e).collect();
         let nothing = vec![DVec3::ZERO; count];
         let share = |k: u32| if self.is_matt(PolygonId(k)) { DVec3::ONE } else { DVec3::ZERO };
         let receives: Vec<DVec3> = (0..count as u32).map(share).collect();
         let gather = Gather::new(self.order.clone(), &nothing, &receives, &reflected);
-        let surface = Surface::new(&self.patches, &self.of, &gather, options)?;
+        let surface = Surface::watched(&self.patches, &self.of, &gather, options, done)?;
         let starts = (0..=count).map(|k| surface.patches.partition_point(|patch| patch.index() < k)).collect();
         self.surface = Some(Irradiance { surface, starts });
         Ok(self)

@@ -1,11 +1,12 @@
 //! `nusselt radiosity`: diffuse interreflection.
 
-use crate::args::{Common, Loading};
+use crate::args::{Common, Loading, parse_direction};
 use crate::failure::Failure;
-use crate::input::load;
+use crate::input::load_materials;
 use crate::output::{check_once, print, print_json, write_file};
-use crate::progress::Progress;
+use crate::progress::{Progress, SharedProgress};
 use crate::summary::{Lines, Timing, number};
+use glam::DVec3;
 use nusselt::contour::SceneOrder;
 use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, mesh_scene};
 use nusselt::io::gltf::write_glb;
@@ -63,6 +64,9 @@ pub(crate) struct Radiosity {
     /// Show radiances times this [default: so that 95% of what reflects is at most 0.8]
     #[arg(long, value_name = "FACTOR", value_parser = parse_size, allow_hyphen_values = true)]
     exposure: Option<f64>,
+    /// What is up in .html, where it can be changed [default: 0,1,0 for glTF, which has it so, and 0,0,1 for everything else]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true)]
+    up: Option<DVec3>,
     /// Write to this file; the ending decides: .glb (colours at vertices), .ply (radiosities too), .html (a page with a
     /// viewer) or .json (patches, and where the power goes). May be repeated
     #[arg(short, long, value_name = "FILE", value_parser = Output::parse)]
@@ -120,7 +124,8 @@ impl Radiosity {
         let files: Vec<&Path> =
             self.output.iter().map(|output| output.path.as_path()).chain(self.state.as_deref()).collect();
         check_once(files.iter().copied())?;
-        let (scene, load_s) = load(&self.scene, files.iter().copied(), &self.loading, common)?;
+        let (scene, materials, load_s) = load_materials(&self.scene, files.iter().copied(), &self.loading, common)?;
+        materials.check(&scene, common, |_| true)?;
         let (patches, of) = self.mesh(&scene)?;
         let start = Instant::now();
         let options = ExchangeOptions { tolerance: self.tolerance, ..ExchangeOptions::default() };
@@ -136,7 +141,7 @@ impl Radiosity {
         self.solve(&key, &mut solver, common)?;
         let solve_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let surface = self.write(&patches, &of, &exchange, &solver)?;
+        let surface = self.write(&patches, &of, &exchange, &solver, common)?;
         let surface_s = start.elapsed().as_secs_f64();
         let timing = Timing::of_many(load_s, order_s, solver.state().shots, solve_s * 1e3, 0.0);
         let balance = solver.balance();
@@ -157,7 +162,7 @@ impl Radiosity {
         lines.add("patches", exchange.patches().len());
         lines.add("shots", solver.state().shots);
         lines.add("unshot", format!("{:.3e} of what is emitted", balance.unshot_fraction()));
-        let part = |power: glam::DVec3| 100.0 * power.element_sum() / balance.emitted.element_sum();
+        let part = |power: DVec3| 100.0 * power.element_sum() / balance.emitted.element_sum();
         let [absorbed, backs, background] = [balance.absorbed, balance.backs, balance.background].map(part);
         lines.add("power", format!("{absorbed:.2}% absorbed, {backs:.2}% at backs, {background:.2}% left the scene"));
         lines.add("defect", number(balance.defect()));
@@ -228,6 +233,7 @@ impl Radiosity {
         of: &[PolygonId],
         exchange: &Exchange,
         solver: &Solver<'_>,
+        common: &Common,
     ) -> Result<Option<Surface>, Failure> {
         for output in self.output.iter().filter(|output| output.format == Format::Json) {
             let centers: Vec<_> = patches.polygons().map(|patch| middle(patches, patch.id())).collect();
@@ -240,15 +246,19 @@ impl Radiosity {
         let order = SceneOrder::new(patches);
         let gather = Gather::new(order, solver.emission(), solver.reflectance(), solver.radiosity());
         let options = SurfaceOptions { detail: self.detail, depth: self.depth, ..SurfaceOptions::default() };
-        let surface = Surface::new(patches, of, &gather, &options).map_err(|error| self.about(&error))?;
+        let views = SharedProgress::new("views from corners", None, common.quiet);
+        let surface = Surface::watched(patches, of, &gather, &options, &|count| views.add(count))
+            .map_err(|error| self.about(&error))?;
+        drop(views);
         let exposure = self.exposure.unwrap_or_else(|| auto_exposure(&surface, solver.emission()));
         for Output { path, format } in &self.output {
             match format {
                 Format::Glb => write_file(path, |out| write_glb(out, &radiosity_meshes(&surface, patches, exposure)))?,
                 Format::Ply => write_file(path, |out| write_radiosity_ply(&surface, exposure, out))?,
                 Format::Html => {
+                    let up = self.up.unwrap_or_else(|| usual_up(&self.scene));
                     let title = self.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                    write_file(path, |out| write_radiosity_html(&surface, &title, exposure, out))?;
+                    write_file(path, |out| write_radiosity_html(&surface, &title, exposure, up, out))?;
                 }
                 Format::Json => {}
             }
@@ -257,10 +267,16 @@ impl Radiosity {
     }
 }
 
+/// What is up in scenes of a file's format: y in glTF, which says so; elsewhere z, as for cameras.
+fn usual_up(file: &Path) -> DVec3 {
+    let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if matches!(&*ending, "gltf" | "glb") { DVec3::Y } else { DVec3::Z }
+}
+
 /// The mean of the corners of a polygon, or the origin if it has none.
-fn middle(scene: &Scene, polygon: PolygonId) -> glam::DVec3 {
+fn middle(scene: &Scene, polygon: PolygonId) -> DVec3 {
     let polygon = scene.polygon(polygon);
     let ring = polygon.rings().first().map_or(&[][..], Vec::as_slice);
-    let sum: glam::DVec3 = ring.iter().map(|&vertex| scene.vertex(vertex)).sum();
+    let sum: DVec3 = ring.iter().map(|&vertex| scene.vertex(vertex)).sum();
     sum / ring.len().max(1) as f64
 }
