@@ -149,7 +149,8 @@ impl Blockers<'_> {
         let reach = element.radius * (1e-12 + element.rounding);
         let low = element.ring.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)) - reach;
         let high = element.ring.iter().fold(DVec3::NEG_INFINITY, |high, &p| high.max(p)) + reach;
-        let others = self.within(|_| true, |other_low, other_high| low.cmple(other_high).all() && high.cmpge(other_low).all());
+        let others =
+            self.within(|_| true, |other_low, other_high| low.cmple(other_high).all() && high.cmpge(other_low).all());
         let frame = &self.elements.frames[element.facet as usize];
         parts(element, frame, &contacts(element.facet, self.facets, frame, &others))
     }

@@ -25,7 +25,7 @@ const OF_FEW: f64 = 0.1;
 const OF_MANY: f64 = 0.015;
 /// The part of their estimates that parts of divided elements are wrong by; their sum is taken to be no more than so many times the root of the sum of their squares,
 /// as errors have both signs. Chosen by dense cities, too: in rows of them estimates were ten times too large, in the middle, without.
-const OF_PARTS: f64 = 0.6;
+const OF_PARTS: f64 = 0.7;
 const OF_ROOT: f64 = 2.0;
 /// As long as so many times what is allowed is left, parts are quartered that are wrong by this part of it.
 const FAR: f64 = 3.0;
@@ -49,13 +49,12 @@ pub(super) struct PartlySpace {
     back: HiddenSpace,
     few: Rule,
     many: Rule,
-    inside: Rule,
 }
 
 impl Default for PartlySpace {
     fn default() -> Self {
         let (there, back) = (HiddenSpace::default(), HiddenSpace::default());
-        Self { there, back, few: Rule::first(), many: Rule::genz_malik(), inside: Rule::genz_malik_inside() }
+        Self { there, back, few: Rule::first(), many: Rule::genz_malik() }
     }
 }
 
@@ -63,7 +62,7 @@ impl Partly<'_> {
     /// The form factor from the element to what it sees of the other, with an estimate of its error that is not above `allowed` if `most` points or so are
     /// enough for that.
     pub(super) fn integrate(&self, allowed: f64, most: usize, space: &mut PartlySpace) -> Share {
-        let PartlySpace { there, back, few, many, inside } = space;
+        let PartlySpace { there, back, few, many } = space;
         let target = Target::new(self.facets, self.elements, [self.from, self.to], self.between, there);
         // With nothing between, what is seen changes steadily.
         let eyes = self.from.ring.iter().copied().chain([self.from.centre]);
@@ -87,8 +86,8 @@ impl Partly<'_> {
             let is_far = quads.error() > FAR * allowed;
             let Some(worst) = quads.pop() else { break };
             let mut add = |corners: [DVec3; 4]| {
-                points += inside.count();
-                let sample = inside.sample(corners, self.from.area, |point| target.factor(point, there));
+                points += many.count();
+                let sample = many.sample(corners, self.from.area, |point| target.factor(point, there));
                 quads.add(corners, Sample { error: OF_PARTS * sample.error, ..sample });
             };
             let first = worst.sample.halve_first;
