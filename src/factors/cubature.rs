@@ -38,7 +38,42 @@ const BESIDE: f64 = 0.999;
 
 /// A rule on the unit square.
 pub(super) struct Rule {
-    points: Vec<([f64; 2], Weights)>,
+    points: Vec<RulePoint>,
+}
+
+struct RulePoint {
+    at: [f64; 2],
+    weights: Weights,
+    /// The sum that it is for, if that compares its value with what those inside foretell.
+    look: Option<usize>,
+}
+
+/// Which sides of a part of a quadrilateral are sides of that: those where the first coordinate and the second are lowest, and highest. Beside the others, other parts have points.
+#[derive(Clone, Copy)]
+pub(super) struct Outer {
+    low: [bool; 2],
+    high: [bool; 2],
+}
+
+impl Outer {
+    pub(super) const ALL: Self = Self { low: [true; 2], high: [true; 2] };
+
+    /// Of the halves of a part, see [`halves`].
+    pub(super) fn halves(self, first: bool) -> [Self; 2] {
+        let axis = usize::from(!first);
+        let mut halves = [self; 2];
+        halves[0].high[axis] = false;
+        halves[1].low[axis] = false;
+        halves
+    }
+
+    /// True if there is something to look for beside the side or the corner of a sum.
+    fn looks(self, sum: usize) -> bool {
+        let Self { low, high } = self;
+        const SIDES_OF: [[usize; 2]; 8] = [[0, 0], [1, 1], [2, 2], [3, 3], [0, 2], [1, 3], [0, 3], [1, 2]];
+        let sides = [low[0], high[0], low[1], high[1]];
+        SIDES_OF[sum - SIDES].iter().all(|&side| sides[side])
+    }
 }
 
 impl Rule {
@@ -87,13 +122,13 @@ impl Rule {
     /// Adds weights to a point of -1 to 1 squared.
     fn add(&mut self, [u, v]: [f64; 2], weights: &[(usize, f64)]) {
         let at = [0.5 + 0.5 * u, 0.5 + 0.5 * v];
-        let known = self.points.iter().position(|(point, _)| point.map(f64::to_bits) == at.map(f64::to_bits));
+        let known = self.points.iter().position(|point| point.at.map(f64::to_bits) == at.map(f64::to_bits));
         let place = known.unwrap_or_else(|| {
-            self.points.push((at, [0.0; SUMS]));
+            self.points.push(RulePoint { at, weights: [0.0; SUMS], look: None });
             self.points.len() - 1
         });
         for &(sum, weight) in weights {
-            self.points[place].1[sum] += weight;
+            self.points[place].weights[sum] += weight;
         }
     }
 
@@ -106,7 +141,9 @@ impl Rule {
             let weight: f64 = others.map(|(_, other)| (BESIDE - other) / (node - other)).product();
             self.add([u * node, v * node], &[(sum, weight)]);
         }
+        let known = self.points.len();
         self.add([u * BESIDE, v * BESIDE], &[(sum, -1.0)]);
+        self.points.iter_mut().skip(known).for_each(|point| point.look = Some(sum));
     }
 }
 
@@ -126,14 +163,24 @@ impl Rule {
         self.points.len()
     }
 
-    pub(super) fn sample(&self, corners: [DVec3; 4], area: f64, mut f: impl FnMut(DVec3) -> f64) -> Sample {
+    /// Of a part, with looks beside its outer sides and corners.
+    pub(super) fn sample(
+        &self,
+        corners: [DVec3; 4],
+        outer: Outer,
+        area: f64,
+        mut f: impl FnMut(DVec3) -> f64,
+    ) -> Sample {
         let [a, b, c, d] = corners;
         let mut sums = [0.0; SUMS];
-        for &([u, v], weights) in &self.points {
+        for &RulePoint { at: [u, v], weights, .. } in
+            self.points.iter().filter(|point| point.look.is_none_or(|sum| outer.looks(sum)))
+        {
             let density = (b - a).lerp(c - d, v).cross((d - a).lerp(c - b, u)).length() / area;
             let value = f(a.lerp(b, u).lerp(d.lerp(c, u), v)) * density;
             sums.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * value);
         }
+        (SIDES..SUMS).filter(|&sum| !outer.looks(sum)).for_each(|sum| sums[sum] = 0.0);
         let halve_first = halves_first(corners, [sums[4].abs(), sums[5].abs()]);
         Sample { value: sums[0], error: estimate(&sums), halve_first }
     }
@@ -309,7 +356,7 @@ where
     fn region(&mut self, corners: [DVec3; 4], rule: &Rule) -> Result<Region, E> {
         let [a, b, c, d] = corners;
         let Self { area, scratch, look, .. } = self;
-        for &([u, v], weights) in &rule.points {
+        for &RulePoint { at: [u, v], weights, .. } in &rule.points {
             let point = a.lerp(b, u).lerp(d.lerp(c, u), v);
             let density = (b - a).lerp(c - d, v).cross((d - a).lerp(c - b, u)).length() / *area;
             look(point, &mut |column, value| scratch.add(column, weights.map(|weight| weight * density * value)))?;

@@ -5,7 +5,7 @@
 //! of the element, sides of blockers are bounds that are none from any of the points, estimates are raised.
 
 use super::bodies::FacetSide;
-use super::cubature::{Rule, Sample, halves};
+use super::cubature::{Outer, Rule, Sample, halves};
 use super::element::{Element, Elements, quads};
 use super::facets::Facets;
 use super::hidden::{HiddenSpace, Target};
@@ -85,16 +85,14 @@ impl Partly<'_> {
         while quads.error() > allowed && points < most {
             let is_far = quads.error() > FAR * allowed;
             let Some(worst) = quads.pop() else { break };
-            let mut add = |corners: [DVec3; 4]| {
-                points += many.count();
-                let sample = many.sample(corners, self.from.area, |point| target.factor(point, there));
-                quads.add(corners, Sample { error: OF_PARTS * sample.error, ..sample });
-            };
-            let first = worst.sample.halve_first;
+            let mut parts = worst.part.halves(worst.sample.halve_first).to_vec();
             if is_far && worst.error() > OF_ALLOWED * allowed {
-                halves(worst.corners, first).into_iter().flat_map(|half| halves(half, !first)).for_each(&mut add);
-            } else {
-                halves(worst.corners, first).into_iter().for_each(&mut add);
+                parts = parts.iter().flat_map(|half| half.halves(!worst.sample.halve_first)).collect();
+            }
+            for part in parts {
+                points += many.count();
+                let sample = many.sample(part.corners, part.outer, self.from.area, |point| target.factor(point, there));
+                quads.add(part, Sample { error: OF_PARTS * sample.error, ..sample });
             }
         }
         quads.total(at_most)
@@ -105,8 +103,9 @@ impl Partly<'_> {
         let mut all = Quads::default();
         for ring in self.parts {
             for quad in quads(ring.len()) {
-                let corners = quad.map(|k| ring[k]);
-                all.add(corners, rule.sample(corners, self.from.area, |point| target.factor(point, space)));
+                let part = Part { corners: quad.map(|k| ring[k]), outer: Outer::ALL };
+                let sample = rule.sample(part.corners, part.outer, self.from.area, |point| target.factor(point, space));
+                all.add(part, sample);
             }
         }
         all
@@ -124,8 +123,23 @@ impl Partly<'_> {
 }
 
 /// A part of the element.
-struct Quad {
+#[derive(Clone, Copy)]
+struct Part {
     corners: [DVec3; 4],
+    outer: Outer,
+}
+
+impl Part {
+    fn halves(&self, first: bool) -> [Self; 2] {
+        let [low, high] = halves(self.corners, first);
+        let [outer_low, outer_high] = self.outer.halves(first);
+        [Self { corners: low, outer: outer_low }, Self { corners: high, outer: outer_high }]
+    }
+}
+
+/// What is known of it.
+struct Quad {
+    part: Part,
     sample: Sample,
     /// What it may be wrong by besides, as something may have been missed.
     missed: f64,
@@ -172,11 +186,11 @@ struct Quads {
 }
 
 impl Quads {
-    fn add(&mut self, corners: [DVec3; 4], sample: Sample) {
+    fn add(&mut self, part: Part, sample: Sample) {
         self.count += 1;
         self.error += sample.error;
         self.squares += sample.error * sample.error;
-        self.waiting.push(Quad { corners, sample, missed: 0.0, number: self.count });
+        self.waiting.push(Quad { part, sample, missed: 0.0, number: self.count });
     }
 
     /// Takes out the one with the largest estimate.
