@@ -9,7 +9,7 @@ use super::row::{Entry, PatchInfo, Row, Share};
 use super::seen::{Columns, Looker};
 use super::shared::{self, Shared};
 use super::tree::ElementTree;
-use super::{ExchangeError, ExchangeOptions, PatchPlan};
+use super::{ExchangeError, ExchangeOptions, PatchMesh, PatchPlan};
 use crate::parallel;
 use crate::scene::Scene;
 use std::ops::Range;
@@ -54,9 +54,6 @@ impl Exchange {
     /// If an option is out of range or a mesh too fine.
     pub fn new(scene: &Scene, plan: PatchPlan, options: ExchangeOptions) -> Result<Self, ExchangeError> {
         let is_positive = |x: f64| x.is_finite() && x > 0.0;
-        if !is_positive(options.tolerance) {
-            return Err(ExchangeError::BadTolerance { tolerance: options.tolerance });
-        }
         if let PatchPlan::Mesh { longest_edge } = plan
             && !is_positive(longest_edge)
         {
@@ -64,6 +61,24 @@ impl Exchange {
         }
         let facets = Facets::of(scene).map_err(ExchangeError::Facets)?;
         let elements = Elements::of(scene, &facets, plan)?;
+        Self::between(facets, elements, options)
+    }
+
+    /// Prepares the patches of a mesh.
+    ///
+    /// # Errors
+    /// If an option is out of range or there are too many patches.
+    pub fn of_mesh(mesh: &PatchMesh, options: ExchangeOptions) -> Result<Self, ExchangeError> {
+        let facets = Facets::of(mesh.scene()).map_err(ExchangeError::Facets)?;
+        let elements = Elements::of_mesh(mesh, &facets)?;
+        Self::between(facets, elements, options)
+    }
+
+    fn between(facets: Facets, elements: Elements, options: ExchangeOptions) -> Result<Self, ExchangeError> {
+        let tolerance = options.tolerance;
+        if !(tolerance.is_finite() && tolerance > 0.0) {
+            return Err(ExchangeError::BadTolerance { tolerance });
+        }
         let trees = elements.of_facet.iter().map(|facet| ElementTree::of(&elements.all, facet)).collect();
         let mut patches = elements.patches.clone();
         for (number, patch) in patches.iter_mut().enumerate() {
