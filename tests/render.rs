@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, UVec2};
 use nusselt::brdf::{Brdf, Fresnel, Lambert, Light, Lighting, Mirror, Phong, Sky, Sum};
 use nusselt::contour::{Domain, Frustum, SceneOrder, Viewpoint};
-use nusselt::factors::mesh_scene;
+use nusselt::factors::{Exchange, ExchangeOptions, PatchMesh, mesh_scene};
 use nusselt::picture::PixelParts;
 use nusselt::radiosity::SurfaceOptions;
 use nusselt::render::{Indirect, RenderError, Rendered, Shader, ShaderOptions, Shading, Spot, render};
@@ -135,7 +135,10 @@ fn furnace(patch: f64, rho: f64, emission: f64) -> (Scene, Indirect) {
 fn a_furnace_looks_even_however_it_is_shaded() {
     let (rho, emission) = (0.6, 2.0);
     let (scene, gathering) = furnace(0.7, rho, emission);
-    let interpolating = gathering.clone().interpolated(&SurfaceOptions::default()).expect("a surface");
+    let mesh = PatchMesh::new(&scene, 0.7).expect("a mesh");
+    let exchange = Exchange::of_mesh(&mesh, ExchangeOptions::default()).expect("patches");
+    let options = SurfaceOptions::default();
+    let interpolating = gathering.clone().interpolated(&exchange, &mesh.regions(), &options).expect("a surface");
     assert!(interpolating.corner_count() > 0 && gathering.corner_count() == 0);
     let camera = Frustum::new(DVec3::new(1.0, 1.5, -0.4), DVec3::Z, 80.0, 1.0).expect("a camera");
     let ways = [

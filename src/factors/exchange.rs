@@ -39,10 +39,10 @@ const ATTEMPTS: [(f64, bool); 3] = [(1.0, false), (1.0, true), (0.1, true)];
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Exchange {
-    facets: Facets,
-    elements: Elements,
-    trees: Vec<ElementTree>,
-    options: ExchangeOptions,
+    pub(super) facets: Facets,
+    pub(super) elements: Elements,
+    pub(super) trees: Vec<ElementTree>,
+    pub(super) options: ExchangeOptions,
     /// Areas as they are in the scene.
     patches: Vec<PatchInfo>,
 }
@@ -146,7 +146,7 @@ impl Exchange {
         Ok(())
     }
 
-    fn row_in(&self, patch: usize, shared: &Shared, space: &mut RowSpace) -> Result<Row, ExchangeError> {
+    pub(super) fn row_in(&self, patch: usize, shared: &Shared, space: &mut RowSpace) -> Result<Row, ExchangeError> {
         let mut failure = None;
         for (part, towards_sides) in ATTEMPTS {
             // Other rows are told only once.

@@ -7,6 +7,7 @@ use super::facets::Facets;
 use super::footprints::footprints;
 use super::halving::Halving;
 use super::mesh;
+use super::outlines::{self, Outline};
 use super::placement::Placement;
 use super::shape::sides;
 use crate::scene::{FaceSpec, PieceId, PolygonId, Scene, SceneError};
@@ -62,20 +63,40 @@ impl PatchMesh {
         Self::of(scene, &facets, longest_edge)
     }
 
+    /// The same, but polygons that are beside each other in one plane, of one material and convex together, are meshed as one: fewer patches, of the finest tessellation
+    /// too. Also tells, for every polygon, the one that its patches are said to be part of, which is the first of those that are joined.
+    ///
+    /// # Errors
+    /// As [`PatchMesh::new`].
+    pub fn joined(scene: &Scene, longest_edge: f64) -> Result<(Self, Vec<PolygonId>), ExchangeError> {
+        let is_positive = longest_edge > 0.0;
+        if !is_positive {
+            return Err(ExchangeError::BadEdge { longest_edge });
+        }
+        let facets = Facets::of(scene).map_err(ExchangeError::Facets)?;
+        let (outlines, hosts) = outlines::joined(scene, &facets);
+        Ok((Self::within(scene, &facets, &outlines, longest_edge)?, hosts))
+    }
+
     pub(super) fn of(scene: &Scene, facets: &Facets, longest_edge: f64) -> Result<Self, ExchangeError> {
+        Self::within(scene, facets, &outlines::pieces(scene, facets), longest_edge)
+    }
+
+    fn within(
+        scene: &Scene,
+        facets: &Facets,
+        outlines: &[Outline],
+        longest_edge: f64,
+    ) -> Result<Self, ExchangeError> {
         let placement = facets.placement;
         let longest = placement.local_length(longest_edge.min(2.0 * scene.diagonal()));
         let frames = frames(facets);
         let mut cells: Vec<(PolygonId, PieceId, Vec<DVec3>)> = Vec::new();
-        for polygon in scene.polygons() {
-            for piece in polygon.pieces() {
-                let outline: Vec<_> =
-                    piece.vertices().iter().map(|&id| (id, placement.local(scene.vertex(id)))).collect();
-                let frame = &frames[facets.of_piece[piece.id().index()] as usize];
-                let parts = mesh::elements(&outline, frame, longest)
-                    .map_err(|mesh::TooFine| ExchangeError::TooFine { polygon: polygon.id() })?;
-                cells.extend(parts.into_iter().map(|ring| (polygon.id(), piece.id(), ring)));
-            }
+        for Outline { polygon, piece, corners } in outlines {
+            let frame = &frames[facets.of_piece[piece.index()] as usize];
+            let parts = mesh::elements(corners, frame, longest)
+                .map_err(|mesh::TooFine| ExchangeError::TooFine { polygon: *polygon })?;
+            cells.extend(parts.into_iter().map(|ring| (*polygon, *piece, ring)));
         }
         let segments = footprints(facets, &frames, longest);
         let plan = |piece: PieceId| {
