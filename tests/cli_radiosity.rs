@@ -115,7 +115,8 @@ fn the_whole_matrix_is_gone_on_with() {
     assert_eq!(folder.read("a.json"), folder.read("b.json"));
     let partial = "c.state.0.rows.partial";
     // As an interrupted run leaves it, and with a row that is wrong, so that one sees that rows are taken from there.
-    let scene = nusselt::io::read_scene(&folder.path("box.obj"), &nusselt::io::ReadOptions::default()).expect("a scene").scene;
+    let scene =
+        nusselt::io::read_scene(&folder.path("box.obj"), &nusselt::io::ReadOptions::default()).expect("a scene").scene;
     let mesh = PatchMesh::new(&scene, 300.0).expect("a mesh");
     let patches = mesh.patches().expect("a scene");
     let options = ExchangeOptions { tolerance: 1e-2, ..ExchangeOptions::default() };
@@ -164,7 +165,10 @@ fn the_ambient_term_is_shown_and_not_counted() {
         // All that reflects gets some.
         assert_eq!(number(&b["ambient"][0]) > 0.0, number(&b["reflectance"][0]) > 0.0);
     }
-    assert_ne!(std::fs::read(folder.path("a.ply")).expect("a file"), std::fs::read(folder.path("b.ply")).expect("a file"));
+    assert_ne!(
+        std::fs::read(folder.path("a.ply")).expect("a file"),
+        std::fs::read(folder.path("b.ply")).expect("a file")
+    );
 }
 
 #[test]

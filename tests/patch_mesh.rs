@@ -75,12 +75,10 @@ fn check_sides(scene: &Scene, mesh: &PatchMesh) {
             if opposite.contains(&polygon) {
                 continue;
             }
-            let outline: Vec<DVec3> =
-                scene.polygon(polygon).rings()[0].iter().map(|&v| scene.vertex(v)).collect();
+            let outline: Vec<DVec3> = scene.polygon(polygon).rings()[0].iter().map(|&v| scene.vertex(v)).collect();
             let size = area(&outline).sqrt();
-            let on = sides(&outline).find(|&[p, q]| {
-                [a, b].iter().all(|r| (r - p).cross(q - p).length() <= 1e-12 * size * p.distance(q))
-            });
+            let on = sides(&outline)
+                .find(|&[p, q]| [a, b].iter().all(|r| (r - p).cross(q - p).length() <= 1e-12 * size * p.distance(q)));
             let [p, q] = on.unwrap_or_else(|| panic!("{a} {b} of {polygon} is no side of another patch"));
             let is_shared = edges[&[key(p).min(key(q)), key(p).max(key(q))]] == 2;
             assert!(!is_shared || opposite.len() == 1, "{a} {b} of {polygon}: its neighbour has another side");
@@ -136,7 +134,10 @@ fn patches_are_covered_as_a_whole_or_not_at_all() {
                     regions[usize::from(is_covered)].insert(mesh.regions()[patch]);
                     counted[usize::from(is_covered)] += 1;
                 }
-                assert!(regions[0].is_disjoint(&regions[1]), "what is below the block is connected with what is beside it");
+                assert!(
+                    regions[0].is_disjoint(&regions[1]),
+                    "what is below the block is connected with what is beside it"
+                );
                 if round == 0 {
                     let (finer, parents) = mesh.halved(|patch| patch % 5 == 0);
                     assert!(finer.len() > mesh.len() && parents.is_sorted());

@@ -73,7 +73,7 @@ fn what_stands_on_a_floor_does_not_darken_it() {
     let scene = furnace_with_block(&material(reflectance, emission));
     let under = DVec3::new(0.75, 1.25, 0.0);
     let is_bottom = |p: DVec3| p.z.abs() < 1e-9 && (p - under).abs().max_element() < 0.25 + 1e-9;
-    for longest in [0.5, 0.37, 1.0] {
+    for longest in [0.5, 0.8] {
         let mesh = PatchMesh::new(&scene, longest).expect("a mesh");
         let patches = mesh.patches().expect("a scene");
         let tolerance = 1e-6;
@@ -82,10 +82,8 @@ fn what_stands_on_a_floor_does_not_darken_it() {
         let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
         solver.solve(1e-10, |_| true).expect("solved");
         assert!(solver.balance().defect() < 1e-9);
-        let rings: Vec<Vec<DVec3>> = patches
-            .polygons()
-            .map(|patch| patch.rings()[0].iter().map(|&v| patches.vertex(v)).collect())
-            .collect();
+        let rings: Vec<Vec<DVec3>> =
+            patches.polygons().map(|patch| patch.rings()[0].iter().map(|&v| patches.vertex(v)).collect()).collect();
         let is_covered = |patch: PolygonId| rings[patch.index()].iter().all(|&p| is_bottom(p));
         let expected = PI * emission / (1.0 - reflectance);
         // As in the furnace above, with 31 square units; cuts make smaller patches than a quarter of the square of the edge.
@@ -98,17 +96,23 @@ fn what_stands_on_a_floor_does_not_darken_it() {
                 // The bottom of the block sees nothing, and what it stands on sees the bottom at no distance.
                 continue;
             }
-            assert!((radiosity.x / expected - 1.0).abs() < bound, "{longest}: {radiosity} of {:?}", rings[patch.id().index()]);
+            assert!(
+                (radiosity.x / expected - 1.0).abs() < bound,
+                "{longest}: {radiosity} of {:?}",
+                rings[patch.id().index()]
+            );
             free += exchange.patches()[patch.id().index()].area;
         }
         assert!((free - (27.0 + 1.0)).abs() < 1e-9, "all but the bottom and what is below it: {free}");
         let gather = Gather::new(&exchange, solver.emission(), solver.reflectance(), solver.radiosity());
-        let covered = patches.polygons().map(|patch| patch.id()).find(|&patch| is_covered(patch) && mesh.polygon(patch.index()).0 == 0);
+        let covered = patches
+            .polygons()
+            .map(|patch| patch.id())
+            .find(|&patch| is_covered(patch) && mesh.polygon(patch.index()).0 == 0);
         let covered = covered.expect("a patch under the block");
         let at = rings[covered.index()].iter().sum::<DVec3>() / rings[covered.index()].len() as f64;
         assert!((gather.at(covered, at).expect("a view").x - PI * emission).abs() < 1e-12, "it emits into the block");
-        let surface =
-            Surface::new(&patches, &mesh.regions(), &gather, &SurfaceOptions::default()).expect("a surface");
+        let surface = Surface::new(&patches, &mesh.regions(), &gather, &SurfaceOptions::default()).expect("a surface");
         assert!(surface.positions.iter().any(|&p| p.distance(DVec3::new(0.5, 1.0, 0.0)) < 1e-3), "a foot of the block");
         let seen = surface.triangles.iter().zip(&surface.patches).filter(|(_, patch)| !is_covered(**patch));
         for corner in seen.flat_map(|(triangle, _)| triangle) {
@@ -125,7 +129,11 @@ fn room_with_table() -> Scene {
     };
     let inwards = [[0, 1, 3, 2], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3], [4, 6, 7, 5]];
     let outwards = inwards.map(|face| [face[3], face[2], face[1], face[0]].to_vec());
-    let builder = Scene::builder().mesh(&cuboid([0.0; 3], [4.0, 3.0, 2.5]), &inwards.map(|face| face.to_vec()), material(0.6, 0.0));
+    let builder = Scene::builder().mesh(
+        &cuboid([0.0; 3], [4.0, 3.0, 2.5]),
+        &inwards.map(|face| face.to_vec()),
+        material(0.6, 0.0),
+    );
     let builder = builder.mesh(&cuboid([1.1, 0.7, 0.6], [2.7, 1.6, 0.7]), &outwards, material(0.5, 0.0));
     let lamp = [[1.3, 1.9, 2.4], [1.9, 1.9, 2.4], [1.9, 2.4, 2.4], [1.3, 2.4, 2.4]];
     builder.mesh(&lamp, &[vec![3, 2, 1, 0]], material(0.0, 5.0)).build().expect("a scene")
@@ -148,7 +156,8 @@ fn subdivided(scene: &Scene, longest: f64, gradient: f64, times: usize) -> Solve
         solver.start_from(guess).or_else(|_| solver.start_from(Vec::new())).expect("started");
         solver.solve(1e-4, |_| true).expect("solved");
         let balance = solver.balance();
-        assert!(balance.defect() < 1e-12, "{balance:?}");
+        // Rounding of some thousands of shots.
+        assert!(balance.defect() < 1e-11, "{balance:?}");
         let radiosity = solver.radiosity().to_vec();
         if time == times {
             return Solved { mesh, radiosity, shots: solver.state().shots };
@@ -186,7 +195,9 @@ fn difference(scene: &Scene, coarse: &Solved, fine: &Solved) -> f64 {
         }
         let middle = ring.iter().sum::<DVec3>() / ring.len() as f64;
         let area = (ring[1] - ring[0]).cross(ring[2] - ring[0]).length() * if ring.len() == 4 { 1.0 } else { 0.5 };
-        let nearest = of_polygon[&polygon].iter().min_by(|&&a, &&b| outside(&own[a], middle).total_cmp(&outside(&own[b], middle)));
+        let nearest = of_polygon[&polygon]
+            .iter()
+            .min_by(|&&a, &&b| outside(&own[a], middle).total_cmp(&outside(&own[b], middle)));
         let found = coarse.radiosity[*nearest.expect("a patch")];
         off += area * (found - fine.radiosity[patch]).length_squared();
         whole += area * fine.radiosity[patch].length_squared();
@@ -194,27 +205,24 @@ fn difference(scene: &Scene, coarse: &Solved, fine: &Solved) -> f64 {
     (off / whole).sqrt()
 }
 
-/// The table in docs/radiosity.md is what this prints.
 #[test]
 fn halving_where_light_changes_is_better_than_finer_patches_everywhere() {
     let scene = room_with_table();
-    let fine = subdivided(&scene, 0.125, 1.0, 0);
-    println!("| patches | error | with uneven ones halved |");
-    for longest in [1.0, 0.7, 0.5, 0.35, 0.25] {
-        let even = subdivided(&scene, longest, 1.0, 0);
-        println!("| {} | {:.4} | |", even.mesh.len(), difference(&scene, &even, &fine));
-    }
-    for (longest, gradient, times) in [(1.0, 0.4, 1), (1.0, 0.4, 2), (1.0, 0.2, 2), (1.0, 0.4, 3)] {
-        let halved = subdivided(&scene, longest, gradient, times);
-        println!("| {} | | {:.4} ({times} times, {gradient}, {} shots) |", halved.mesh.len(), difference(&scene, &halved, &fine), halved.shots);
-    }
+    let fine = subdivided(&scene, 0.2, 1.0, 0);
+    let even = subdivided(&scene, 0.4, 1.0, 0);
+    let halved = subdivided(&scene, 0.8, 0.8, 2);
+    let [of_even, of_halved] = [&even, &halved].map(|solved| difference(&scene, solved, &fine));
+    println!("{} of {} even patches, {of_halved} of {} halved ones", of_even, even.mesh.len(), halved.mesh.len());
+    assert!(halved.mesh.len() < even.mesh.len() && of_halved < 0.9 * of_even, "{of_halved} {of_even}");
+    assert!(halved.shots * 2 < even.shots, "{} {}", halved.shots, even.shots);
 }
 
 #[test]
 fn a_guess_changes_the_way_and_not_the_solution() {
     let scene = room_with_table();
     let mesh = PatchMesh::new(&scene, 1.0).expect("a mesh");
-    let exchange = Exchange::of_mesh(&mesh, ExchangeOptions { tolerance: 1e-2, ..ExchangeOptions::default() }).expect("patches");
+    let exchange =
+        Exchange::of_mesh(&mesh, ExchangeOptions { tolerance: 1e-2, ..ExchangeOptions::default() }).expect("patches");
     let solved = |guess: Vec<DVec3>, stop: usize| {
         let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
         solver.start_from(guess).expect("one for each patch");
@@ -229,7 +237,8 @@ fn a_guess_changes_the_way_and_not_the_solution() {
     for (guess, is_near) in [(wild, false), (near, true)] {
         let found: SolverState = solved(guess, usize::MAX);
         // As with overshooting above.
-        let off = plain.radiosity.iter().zip(&found.radiosity).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f64::max);
+        let off =
+            plain.radiosity.iter().zip(&found.radiosity).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f64::max);
         assert!(off < 1e-7 * most, "{off} of {most}");
         assert!(!is_near || found.shots < plain.shots, "{} {}", found.shots, plain.shots);
         // Interrupted while it guesses, it comes to the same bits.
@@ -267,7 +276,8 @@ fn the_ambient_term_is_that_of_the_paper_and_comes_nearer_to_the_solution() {
     let coloured = |diffuse: [f64; 3], emission: f64| Material { diffuse, ..material(0.0, emission) };
     let scene = hollow(coloured([0.8, 0.5, 0.2], 0.0), coloured([0.1, 0.3, 0.0], 1.0));
     let exchange = exchange(&scene, 1e-6);
-    let mut solver = Solver::new(&scene, &exchange, SolverOptions { batch: 1, ..SolverOptions::default() }).expect("a solver");
+    let mut solver =
+        Solver::new(&scene, &exchange, SolverOptions { batch: 1, ..SolverOptions::default() }).expect("a solver");
     let (lid, walls) = (6.0, 2.0 * (3.0 + 4.5) + 6.0);
     for k in 0..3 {
         let mean = (walls * [0.8, 0.5, 0.2][k] + lid * [0.1, 0.3, 0.0][k]) / (walls + lid);
@@ -284,7 +294,9 @@ fn the_ambient_term_is_that_of_the_paper_and_comes_nearer_to_the_solution() {
     assert!((ambient[2].x - 0.8 * unshot.x / (walls + lid) / (1.0 - mean)).abs() < 1e-13);
     let (before, balance) = (solver.radiosity().to_vec(), solver.balance());
     solver.solve(1e-12, |_| true).expect("solved");
-    let power = |off: &mut dyn Iterator<Item = DVec3>| off.zip(areas).map(|(b, area)| b.abs().element_sum() * area).sum::<f64>();
+    let power = |off: &mut dyn Iterator<Item = DVec3>| {
+        off.zip(areas).map(|(b, area)| b.abs().element_sum() * area).sum::<f64>()
+    };
     let without = power(&mut before.iter().zip(solver.radiosity()).map(|(b, end)| end - b));
     let with = power(&mut before.iter().zip(&ambient).zip(solver.radiosity()).map(|((b, more), end)| end - b - more));
     assert!(with < 0.2 * without, "{with} {without}");

@@ -113,8 +113,7 @@ impl<'a> Cell<'a> {
         let low = flat.iter().fold(DVec2::INFINITY, |low, &p| low.min(p));
         let high = flat.iter().fold(DVec2::NEG_INFINITY, |high, &p| high.max(p));
         let reach = SNAP * (high - low).max_element();
-        let meets =
-            |&[p, q]: &[DVec2; 2]| p.min(q).cmple(high + reach).all() && p.max(q).cmpge(low - reach).all();
+        let meets = |&[p, q]: &[DVec2; 2]| p.min(q).cmple(high + reach).all() && p.max(q).cmpge(low - reach).all();
         self.segments.iter().copied().filter(meets).collect()
     }
 
@@ -166,7 +165,15 @@ struct Net<'a> {
 impl<'a> Net<'a> {
     fn of(cell: &Cell<'a>, points: Vec<DVec3>, on: Vec<usize>) -> Self {
         let flat = points.iter().map(|&p| cell.frame.flat(p)).collect();
-        Self { frame: cell.frame, ring: cell.flat(), points, flat, on, chords: Vec::new(), reach: 4.0 * SNAP * cell.size() }
+        Self {
+            frame: cell.frame,
+            ring: cell.flat(),
+            points,
+            flat,
+            on,
+            chords: Vec::new(),
+            reach: 4.0 * SNAP * cell.size(),
+        }
     }
 
     /// The node at a place; a new one if there is none near it and there may be.
@@ -267,7 +274,9 @@ impl<'a> Net<'a> {
             // Chords from side to side.
             let mut parts = vec![outline];
             for &[a, b] in &self.chords {
-                let Some(place) = parts.iter().position(|part| part.contains(&a) && part.contains(&b)) else { continue };
+                let Some(place) = parts.iter().position(|part| part.contains(&a) && part.contains(&b)) else {
+                    continue;
+                };
                 let mut part = parts.swap_remove(place);
                 let first = part.iter().position(|&node| node == a).unwrap_or(0);
                 part.rotate_left(first);
@@ -277,7 +286,10 @@ impl<'a> Net<'a> {
                 parts.extend([part, other]);
             }
             parts.retain(|part| part.len() > 2);
-            parts.into_iter().flat_map(|part| if self.is_plain(&part) { vec![part] } else { self.filled(&part, &[]) }).collect()
+            parts
+                .into_iter()
+                .flat_map(|part| if self.is_plain(&part) { vec![part] } else { self.filled(&part, &[]) })
+                .collect()
         } else {
             self.filled(&outline, &self.chords)
         };
@@ -334,9 +346,9 @@ impl<'a> Net<'a> {
         let points = |face: &[usize]| face.iter().map(|&node| self.points[node]).collect::<Vec<_>>();
         let all = mesh.inner_faces().map(|face| face.vertices().map(|vertex| nodes[vertex.index()]).to_vec());
         // Between nodes of one side rounding may leave triangles outside of it.
-        let longest = |face: &[usize]| sides(face).map(|[a, b]| self.flat[a].distance(self.flat[b])).fold(0.0, f64::max);
-        let faces: Vec<Vec<usize>> =
-            all.filter(|face| area(&points(face)) > 1e-9 * longest(face).powi(2)).collect();
+        let longest =
+            |face: &[usize]| sides(face).map(|[a, b]| self.flat[a].distance(self.flat[b])).fold(0.0, f64::max);
+        let faces: Vec<Vec<usize>> = all.filter(|face| area(&points(face)) > 1e-9 * longest(face).powi(2)).collect();
         let sum: f64 = faces.iter().map(|face| area(&points(face))).sum();
         let whole = area(&points(ring));
         ((sum - whole).abs() <= 1e-9 * whole).then_some(faces)

@@ -84,7 +84,8 @@ mod tests {
             (state >> 11) as f64 / (1_u64 << 53) as f64
         };
         let mut point = || DVec3::new(random(), random(), random());
-        let boxes: Vec<[DVec3; 2]> = (0..200).map(|_| (point(), 0.2 * point())).map(|(p, size)| [p, p + size]).collect();
+        let boxes: Vec<[DVec3; 2]> =
+            (0..200).map(|_| (point(), 0.2 * point())).map(|(p, size)| [p, p + size]).collect();
         let reach = 0.01;
         let mut found = Vec::new();
         near_pairs(&boxes, reach, |a, b| found.push([a.min(b), a.max(b)]));

@@ -99,8 +99,10 @@ mod tests {
         }
         for round in 0..5 {
             let list: Vec<&[DVec3]> = rings.iter().map(Vec::as_slice).collect();
-            let wanted: Vec<bool> =
-                rings.iter().map(|ring| centre(ring).distance(DVec3::new(1.7, 2.3, 0.0)) < 0.9 / f64::from(1 << round)).collect();
+            let wanted: Vec<bool> = rings
+                .iter()
+                .map(|ring| centre(ring).distance(DVec3::new(1.7, 2.3, 0.0)) < 0.9 / f64::from(1 << round))
+                .collect();
             assert!(wanted.iter().any(|is| *is));
             let halving = Halving::of(&list, |k| wanted[k]);
             let next: Vec<Vec<DVec3>> = rings.iter().flat_map(|ring| halving.parts(ring)).collect();
@@ -113,8 +115,10 @@ mod tests {
             for [a, b] in rings.iter().flat_map(|ring| sides(ring)) {
                 // Every side is one of another ring, or on the outline.
                 let count = rings.iter().flat_map(|ring| sides(ring)).filter(|&side| side == [b, a]).count();
-                let is_outline = [a, b].iter().all(|p| p.x == 0.0) || [a, b].iter().all(|p| p.x == 5.0)
-                    || [a, b].iter().all(|p| p.y == 0.0) || [a, b].iter().all(|p| p.y == 5.0);
+                let is_outline = [a, b].iter().all(|p| p.x == 0.0)
+                    || [a, b].iter().all(|p| p.x == 5.0)
+                    || [a, b].iter().all(|p| p.y == 0.0)
+                    || [a, b].iter().all(|p| p.y == 5.0);
                 assert_eq!(count, usize::from(!is_outline), "{a} {b}");
             }
             assert!(edges.len() > rings.len());

@@ -34,7 +34,8 @@ pub(super) fn joined(scene: &Scene, facets: &Facets) -> (Vec<Outline>, Vec<Polyg
         let mut polygons = of_facet[facet].iter().map(|&piece| scene.polygon(scene.piece(piece).polygon()));
         let Some(first) = polygons.next() else { return false };
         let is_alike = |other: &crate::scene::PolygonRef<'_>| other.material_id() == first.material_id();
-        let is_whole = |polygon: crate::scene::PolygonRef<'_>| polygon.pieces().all(|piece| facet_of(piece) as usize == facet);
+        let is_whole =
+            |polygon: crate::scene::PolygonRef<'_>| polygon.pieces().all(|piece| facet_of(piece) as usize == facet);
         is_whole(first) && polygons.all(|polygon| is_alike(&polygon) && is_whole(polygon))
     };
     let is_joined: Vec<bool> = (0..of_facet.len()).map(is_joined).collect();

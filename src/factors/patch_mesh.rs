@@ -15,7 +15,7 @@ use glam::DVec3;
 use rustc_hash::FxHashMap;
 use std::collections::HashMap;
 
-/// The polygons of a scene in patches: triangles and quadrilaterals. They have edges where others stand on a polygon, pass through it or
+/// The polygons of a scene in patches: triangles and quadrilaterals. Those of [`PatchMesh::new`] have edges where others stand on a polygon, pass through it or
 /// lie on it, so that each is covered as a whole or not at all. Edges that polygons share are divided in the same places, and within a polygon there are no T-junctions.
 ///
 /// ```
@@ -63,8 +63,8 @@ impl PatchMesh {
         Self::of(scene, &facets, longest_edge)
     }
 
-    /// The same, but polygons that are beside each other in one plane, of one material and convex together, are meshed as one: fewer patches, of the finest tessellation
-    /// too. Also tells, for every polygon, the one that its patches are said to be part of, which is the first of those that are joined.
+    /// The same, but polygons that are beside each other in one plane, of one material and convex together, are meshed as one, and nothing is cut where others stand: fewer patches,
+    /// for pictures to which patches only lend what they reflect. Also tells, for every polygon, the one that its patches are said to be part of, which is the first of those that are joined.
     ///
     /// # Errors
     /// As [`PatchMesh::new`].
@@ -75,11 +75,11 @@ impl PatchMesh {
         }
         let facets = Facets::of(scene).map_err(ExchangeError::Facets)?;
         let (outlines, hosts) = outlines::joined(scene, &facets);
-        Ok((Self::within(scene, &facets, &outlines, longest_edge)?, hosts))
+        Ok((Self::within(scene, &facets, &outlines, longest_edge, false)?, hosts))
     }
 
     pub(super) fn of(scene: &Scene, facets: &Facets, longest_edge: f64) -> Result<Self, ExchangeError> {
-        Self::within(scene, facets, &outlines::pieces(scene, facets), longest_edge)
+        Self::within(scene, facets, &outlines::pieces(scene, facets), longest_edge, true)
     }
 
     fn within(
@@ -87,6 +87,7 @@ impl PatchMesh {
         facets: &Facets,
         outlines: &[Outline],
         longest_edge: f64,
+        is_cut: bool,
     ) -> Result<Self, ExchangeError> {
         let placement = facets.placement;
         let longest = placement.local_length(longest_edge.min(2.0 * scene.diagonal()));
@@ -98,7 +99,7 @@ impl PatchMesh {
                 .map_err(|mesh::TooFine| ExchangeError::TooFine { polygon: *polygon })?;
             cells.extend(parts.into_iter().map(|ring| (*polygon, *piece, ring)));
         }
-        let segments = footprints(facets, &frames, longest);
+        let segments = if is_cut { footprints(facets, &frames, longest) } else { vec![Vec::new(); frames.len()] };
         let plan = |piece: PieceId| {
             let facet = facets.of_piece[piece.index()] as usize;
             (&frames[facet], &segments[facet][..])

@@ -41,12 +41,18 @@ impl<'a> Receivers<'a> {
         let columns = Columns { patches: elements.patches.len() as u32 };
         let (mut sum, mut sees_out) = (DVec3::ZERO, false);
         let looker = Looker { facets, elements, trees, sides: options.sides };
-        let looked = looker.look(&mut space, facet, near, |_| true, |column, share| {
-            sees_out |= column != columns.backs() && share > 0.0;
-            if let Some(&radiosity) = radiosity.get(column as usize) {
-                sum += radiosity * share;
-            }
-        });
+        let looked = looker.look(
+            &mut space,
+            facet,
+            near,
+            |_| true,
+            |column, share| {
+                sees_out |= column != columns.backs() && share > 0.0;
+                if let Some(&radiosity) = radiosity.get(column as usize) {
+                    sum += radiosity * share;
+                }
+            },
+        );
         free().push(space);
         looked.map(|()| sees_out.then_some(sum))
     }

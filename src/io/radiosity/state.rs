@@ -88,12 +88,7 @@ struct Kept {
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write_state(
-    key: &StateKey,
-    halved: &[Vec<u32>],
-    solver: &SolverState,
-    out: &mut impl Write,
-) -> io::Result<()> {
+pub fn write_state(key: &StateKey, halved: &[Vec<u32>], solver: &SolverState, out: &mut impl Write) -> io::Result<()> {
     let list = |colours: &[DVec3]| colours.iter().map(DVec3::to_array).collect();
     let kept = Kept {
         schema: STATE_SCHEMA.to_owned(),

@@ -22,8 +22,8 @@ const EXAMPLE: &str = "\
 Examples: a room in patches of at most 0.3 m, for a viewer and as a page that shows itself
   nusselt radiosity room.obj --patch 0.3 -o room.glb -o room.html
 
-Patches halved twice where the light changes on them by more than a tenth
-  nusselt radiosity room.obj --patch 1 --subdivide 2 --gradient 0.1 -o room.html
+Patches halved twice where the light changes on them by more than a half
+  nusselt radiosity room.obj --patch 1 --subdivide 2 --gradient 0.5 -o room.html
 
 A long one, kept every ten seconds, and on again after an interruption
   nusselt radiosity hall.obj --patch 0.2 --until 1e-4 --state hall.state -o hall.ply
@@ -44,7 +44,7 @@ pub(crate) struct Radiosity {
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     subdivide: u32,
     /// Halve patches on which radiosities differ by more than this part of their mean, or of the mean of all surfaces if that is more
-    #[arg(long, value_name = "PART", default_value = "0.2", requires = "subdivide", value_parser = parse_size, allow_hyphen_values = true)]
+    #[arg(long, value_name = "PART", default_value = "0.5", requires = "subdivide", value_parser = parse_size, allow_hyphen_values = true)]
     gradient: f64,
     /// Stop when so much of the emitted power is left to be sent
     #[arg(long, value_name = "FRACTION", default_value = "0.01", value_parser = parse_fraction, allow_hyphen_values = true)]

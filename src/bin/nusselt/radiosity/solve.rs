@@ -72,7 +72,8 @@ impl Work<'_> {
         let mut guess = None;
         loop {
             let options = SolverOptions { overshoot: self.asked.overshoot, ..SolverOptions::default() };
-            let mut solver = Solver::new(self.scene, &stage.exchange, options).map_err(|error| self.asked.about(&error))?;
+            let mut solver =
+                Solver::new(self.scene, &stage.exchange, options).map_err(|error| self.asked.about(&error))?;
             if let Some(state) = state.take() {
                 let path = self.asked.state.as_deref().unwrap_or(&self.asked.scene);
                 solver.resume(state).map_err(|error| Failure::about(path, &error))?;
@@ -107,7 +108,9 @@ impl Work<'_> {
         let kept = read_state(key, &text).map_err(|error| Failure::about(path, &error))?;
         if kept.halved.len() > *subdivide as usize {
             let times = kept.halved.len();
-            let what = format!("patches were halved {times} times; ask for --subdivide {times} or more, or leave out --resume");
+            let what = format!(
+                "patches were halved {times} times; ask for --subdivide {times} or more, or leave out --resume"
+            );
             return Err(Failure::about(path, &what));
         }
         Ok(Some(kept))
@@ -119,11 +122,7 @@ impl Work<'_> {
     }
 
     /// The mesh with those patches halved on which the light changes, the patch that each is part of, and which were asked for; none if there are none.
-    fn halved(
-        &self,
-        stage: &Stage,
-        solver: &Solver<'_>,
-    ) -> Result<Option<(PatchMesh, Vec<usize>, Vec<u32>)>, Failure> {
+    fn halved(&self, stage: &Stage, solver: &Solver<'_>) -> Result<Option<(PatchMesh, Vec<usize>, Vec<u32>)>, Failure> {
         let Some(mesh) = &stage.mesh else { return Ok(None) };
         let gather = Gather::new(&stage.exchange, solver.emission(), solver.reflectance(), solver.radiosity());
         let uneven = uneven_patches(&stage.patches, &stage.regions, &gather, self.asked.gradient)
@@ -170,7 +169,9 @@ impl Work<'_> {
         let patches = stage.exchange.patches();
         let job = MatrixJob::new(&stage.patches, patches).with_option("--tolerance", self.asked.tolerance);
         let mut writer = match self.asked.rows_file(keeping.halved.len() as u32) {
-            Some(path) if self.asked.resume => Some(MatrixWriter::resume_with(&path, &job, |row| solver.take_row(row.clone()))),
+            Some(path) if self.asked.resume => {
+                Some(MatrixWriter::resume_with(&path, &job, |row| solver.take_row(row.clone())))
+            }
             Some(path) => {
                 // Rows of another run are of no use.
                 for old in &MatrixWriter::files(&path)[1..] {
@@ -188,14 +189,15 @@ impl Work<'_> {
         }
         let first = writer.as_ref().map_or(0, |writer| writer.next_row() as usize);
         let mut progress = Progress::new("rows", Some(patches.len() - first), self.quiet);
-        solver.compute_rows(first, |row| {
-            progress.add(1);
-            writer.as_mut().map_or(Ok(()), |writer| writer.row(row).map_err(|error| Stopped::Failed(failed(error))))
-        })
-        .map_err(|stopped| match stopped {
-            Stopped::Failed(failure) => failure,
-            Stopped::NoRow(error) => self.asked.about(&error),
-        })?;
+        solver
+            .compute_rows(first, |row| {
+                progress.add(1);
+                writer.as_mut().map_or(Ok(()), |writer| writer.row(row).map_err(|error| Stopped::Failed(failed(error))))
+            })
+            .map_err(|stopped| match stopped {
+                Stopped::Failed(failure) => failure,
+                Stopped::NoRow(error) => self.asked.about(&error),
+            })?;
         Ok(writer)
     }
 }
