@@ -7,6 +7,8 @@ use nusselt::scene::{Material, PolygonId, Scene};
 use std::collections::{HashMap, HashSet};
 
 type Key = [u64; 3];
+/// Vertices and faces.
+type Part = (Vec<[f64; 3]>, Vec<Vec<usize>>);
 
 fn key(p: DVec3) -> Key {
     p.to_array().map(|x| (x + 0.0).to_bits())
@@ -26,7 +28,7 @@ fn area(ring: &[DVec3]) -> f64 {
 }
 
 /// A floor of some quadrilaterals, wider than 4 x 3, from z = 0 where x is below 2 and sloping up by `slope` beyond it.
-fn floor(slope: f64, columns: &[f64]) -> (Vec<[f64; 3]>, Vec<Vec<usize>>) {
+fn floor(slope: f64, columns: &[f64]) -> Part {
     let at = |x: f64, y: f64| [x, y, slope * (x - 2.0).max(0.0)];
     let vertices = columns.iter().flat_map(|&x| [at(x, 0.0), at(x, 3.0)]).collect();
     let faces = (0..columns.len() - 1).map(|k| vec![2 * k, 2 * k + 2, 2 * k + 3, 2 * k + 1]).collect();
@@ -43,8 +45,8 @@ fn block(middle: DVec2, half: f64, angle: f64, bottom: f64) -> (Vec<[f64; 3]>, V
     (vertices, faces, corners)
 }
 
-fn scene(parts: &[(Vec<[f64; 3]>, Vec<Vec<usize>>)]) -> Scene {
-    let add = |builder: nusselt::scene::SceneBuilder, (vertices, faces): &(Vec<[f64; 3]>, Vec<Vec<usize>>)| {
+fn scene(parts: &[Part]) -> Scene {
+    let add = |builder: nusselt::scene::SceneBuilder, (vertices, faces): &Part| {
         builder.mesh(vertices, faces, Material::new("grey"))
     };
     parts.iter().fold(Scene::builder(), add).build().expect("a scene")
@@ -105,7 +107,7 @@ fn patches_are_covered_as_a_whole_or_not_at_all() {
             let slope = if columns.len() == 2 { 0.0 } else { 0.3 * f64::from(step % 2) };
             let bottom = if step % 4 == 0 && slope == 0.0 { 0.0 } else { -0.2 };
             let middle = DVec2::new(1.9, 1.4 + 0.01 * f64::from(step));
-            let angle = [0.0, 0.1, 0.785_398_163_397_448_3][step as usize % 3] + 0.3 * k as f64;
+            let angle = [0.0, 0.1, std::f64::consts::FRAC_PI_4][step as usize % 3] + 0.3 * k as f64;
             let (vertices, faces, corners) = block(middle, 0.83, angle, bottom);
             let scene = scene(&[floor(slope, columns), (vertices, faces)]);
             let longest = [0.5, 0.31, 1.0, 10.0][step as usize % 4];

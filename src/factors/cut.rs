@@ -83,14 +83,13 @@ fn meetings([p, q]: [DVec2; 2], segment: [DVec2; 2]) -> [Option<f64>; 2] {
     let is_on = heights.map(|height| height.abs() <= SNAP * length);
     let inner = |t: f64| (SNAP..=1.0 - SNAP).contains(&t).then_some(t);
     match is_on {
-        [true, true] => [None; 2],
         [true, false] => [inner(along[0]), None],
         [false, true] => [inner(along[1]), None],
         [false, false] if (heights[0] < 0.0) != (heights[1] < 0.0) => {
             let part = heights[0] / (heights[0] - heights[1]);
             [inner(along[0] + (along[1] - along[0]) * part), None]
         }
-        [false, false] => [None; 2],
+        _ => [None; 2],
     }
 }
 
@@ -125,7 +124,9 @@ impl<'a> Cell<'a> {
             return vec![outline];
         }
         let mut net = Net::of(self, outline, on);
-        near.iter().for_each(|&segment| net.add(segment));
+        for &segment in &near {
+            net.add(segment);
+        }
         net.cross();
         net.parts()
     }

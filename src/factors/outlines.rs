@@ -2,7 +2,7 @@
 
 use super::cut::{Key, key};
 use super::facets::Facets;
-use crate::scene::{PieceId, PieceRef, PolygonId, Scene, VertexId};
+use crate::scene::{PieceId, PieceRef, PolygonId, PolygonRef, Scene, VertexId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
 
@@ -16,7 +16,7 @@ pub(super) struct Outline {
 
 /// All pieces, by their polygons.
 pub(super) fn pieces(scene: &Scene, facets: &Facets) -> Vec<Outline> {
-    let pieces = scene.polygons().flat_map(|polygon| polygon.pieces());
+    let pieces = scene.polygons().flat_map(PolygonRef::pieces);
     pieces.map(|piece| of_piece(scene, facets, piece)).collect()
 }
 
@@ -33,9 +33,8 @@ pub(super) fn joined(scene: &Scene, facets: &Facets) -> (Vec<Outline>, Vec<Polyg
     let is_joined = |facet: usize| {
         let mut polygons = of_facet[facet].iter().map(|&piece| scene.polygon(scene.piece(piece).polygon()));
         let Some(first) = polygons.next() else { return false };
-        let is_alike = |other: &crate::scene::PolygonRef<'_>| other.material_id() == first.material_id();
-        let is_whole =
-            |polygon: crate::scene::PolygonRef<'_>| polygon.pieces().all(|piece| facet_of(piece) as usize == facet);
+        let is_alike = |other: &PolygonRef<'_>| other.material_id() == first.material_id();
+        let is_whole = |polygon: PolygonRef<'_>| polygon.pieces().all(|piece| facet_of(piece) as usize == facet);
         is_whole(first) && polygons.all(|polygon| is_alike(&polygon) && is_whole(polygon))
     };
     let is_joined: Vec<bool> = (0..of_facet.len()).map(is_joined).collect();
@@ -46,9 +45,9 @@ pub(super) fn joined(scene: &Scene, facets: &Facets) -> (Vec<Outline>, Vec<Polyg
         .rev()
         .map(|(number, &p)| (key(facets.placement.local(p)), VertexId(number as u32)))
         .collect();
-    let mut hosts: Vec<PolygonId> = scene.polygons().map(|polygon| polygon.id()).collect();
+    let mut hosts: Vec<PolygonId> = scene.polygons().map(PolygonRef::id).collect();
     let mut outlines = Vec::new();
-    for piece in scene.polygons().flat_map(|polygon| polygon.pieces()) {
+    for piece in scene.polygons().flat_map(PolygonRef::pieces) {
         let facet = facet_of(piece) as usize;
         if !is_joined[facet] {
             outlines.push(of_piece(scene, facets, piece));

@@ -105,7 +105,9 @@ impl PatchMesh {
             (&frames[facet], &segments[facet][..])
         };
         let mut places = Places::default();
-        cells.iter().for_each(|(_, piece, ring)| places.note(&Cell::of(plan(*piece), ring)));
+        for (_, piece, ring) in &cells {
+            places.note(&Cell::of(plan(*piece), ring));
+        }
         places.settle();
         let mut parts = Vec::with_capacity(cells.len());
         for (polygon, piece, ring) in &cells {

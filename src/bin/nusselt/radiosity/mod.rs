@@ -76,14 +76,21 @@ pub(crate) struct Radiosity {
     /// viewer) or .json (patches, and where the power goes). May be repeated
     #[arg(short, long, value_name = "FILE", value_parser = Output::parse)]
     output: Vec<Output>,
+    #[command(flatten)]
+    keep: Keep,
+    #[command(flatten)]
+    loading: Loading,
+}
+
+/// What is kept of a solution.
+#[derive(clap::Args)]
+struct Keep {
     /// Keep the solution in this file every ten seconds and in the end; with --full, until it is solved, rows of form factors too, beside it
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// Go on from the file of --state, if it is there
     #[arg(long, requires = "state")]
     resume: bool,
-    #[command(flatten)]
-    loading: Loading,
 }
 
 pub(crate) fn parse_size(text: &str) -> Result<f64, String> {
@@ -99,7 +106,7 @@ pub(crate) fn parse_fraction(text: &str) -> Result<f64, String> {
 impl Radiosity {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         let files: Vec<&Path> =
-            self.output.iter().map(|output| output.path.as_path()).chain(self.state.as_deref()).collect();
+            self.output.iter().map(|output| output.path.as_path()).chain(self.keep.state.as_deref()).collect();
         let rows = (0..=self.subdivide).filter_map(|halvings| self.rows_file(halvings));
         let rows_files = rows.flat_map(|path| MatrixWriter::files(&path)).collect::<Vec<_>>();
         check_once(files.iter().copied().chain(rows_files.iter().map(PathBuf::as_path)))?;
@@ -110,14 +117,14 @@ impl Radiosity {
         let order_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
         work.solve(stage, |stage, solver| {
-            let times = Times { load_s, order_s, solve_s: start.elapsed().as_secs_f64() };
+            let times = Spent { load: load_s, order: order_s, solve: start.elapsed().as_secs_f64() };
             self.finish(stage, solver, times, &files, common)
         })
     }
 
     /// The file of rows of --full after so many halvings, if they are kept.
     fn rows_file(&self, halvings: u32) -> Option<PathBuf> {
-        let mut name = self.state.as_ref().filter(|_| self.full)?.clone().into_os_string();
+        let mut name = self.keep.state.as_ref().filter(|_| self.full)?.clone().into_os_string();
         name.push(format!(".{halvings}.rows"));
         Some(name.into())
     }
@@ -127,7 +134,7 @@ impl Radiosity {
         &self,
         stage: &Stage,
         solver: &Solver<'_>,
-        Times { load_s, order_s, solve_s }: Times,
+        Spent { load: load_s, order: order_s, solve: solve_s }: Spent,
         files: &[&Path],
         common: &Common,
     ) -> Result<(), Failure> {
@@ -173,9 +180,9 @@ impl Radiosity {
     }
 }
 
-/// How long it took before what was found is written.
-struct Times {
-    load_s: f64,
-    order_s: f64,
-    solve_s: f64,
+/// How long it took, in seconds, before what was found is written.
+struct Spent {
+    load: f64,
+    order: f64,
+    solve: f64,
 }

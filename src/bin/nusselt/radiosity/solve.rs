@@ -1,6 +1,6 @@
 //! Solving, for patches as they are first and as they are halved then; and keeping what there is of it.
 
-use super::{Radiosity, Stage};
+use super::{Keep, Radiosity, Stage};
 use crate::failure::Failure;
 use crate::output::write_file;
 use crate::progress::Progress;
@@ -27,6 +27,15 @@ pub(super) struct Work<'a> {
 struct Keeping {
     key: StateKey,
     halved: Vec<Vec<u32>>,
+}
+
+/// A mesh with some patches halved.
+struct Halved {
+    mesh: PatchMesh,
+    /// The patch that each was part of.
+    parents: Vec<usize>,
+    /// Which were to be halved, ascending.
+    list: Vec<u32>,
 }
 
 impl Work<'_> {
@@ -75,7 +84,7 @@ impl Work<'_> {
             let mut solver =
                 Solver::new(self.scene, &stage.exchange, options).map_err(|error| self.asked.about(&error))?;
             if let Some(state) = state.take() {
-                let path = self.asked.state.as_deref().unwrap_or(&self.asked.scene);
+                let path = self.asked.keep.state.as_deref().unwrap_or(&self.asked.scene);
                 solver.resume(state).map_err(|error| Failure::about(path, &error))?;
             }
             if let Some(guess) = guess.take() {
@@ -86,7 +95,9 @@ impl Work<'_> {
             if keeping.halved.len() >= self.asked.subdivide as usize {
                 return finish(&stage, &solver);
             }
-            let Some((mesh, parents, list)) = self.halved(&stage, &solver)? else { return finish(&stage, &solver) };
+            let Some(Halved { mesh, parents, list }) = self.halved(&stage, &solver)? else {
+                return finish(&stage, &solver);
+            };
             guess = Some(parents.into_iter().map(|parent| solver.radiosity()[parent]).collect());
             keeping.halved.push(list);
             stage = Stage::of_mesh(mesh, self.exchange_options()).map_err(|error| self.asked.about(&error))?;
@@ -101,7 +112,7 @@ impl Work<'_> {
 
     /// What was kept, if it is to be gone on from.
     fn kept(&self, key: &StateKey) -> Result<Option<KeptState>, Failure> {
-        let Radiosity { state, resume, subdivide, .. } = self.asked;
+        let Radiosity { keep: Keep { state, resume }, subdivide, .. } = self.asked;
         let Some(path) = state.as_ref().filter(|path| *resume && path.exists()) else { return Ok(None) };
         let text = fs::read_to_string(path)
             .map_err(|error| Failure::Work(format!("cannot read {}: {error}", path.display())))?;
@@ -117,12 +128,12 @@ impl Work<'_> {
     }
 
     fn keep(&self, keeping: &Keeping, solver: &Solver<'_>) -> Result<(), Failure> {
-        let Some(path) = &self.asked.state else { return Ok(()) };
+        let Some(path) = &self.asked.keep.state else { return Ok(()) };
         write_file(path, |out| write_state(&keeping.key, &keeping.halved, solver.state(), out))
     }
 
-    /// The mesh with those patches halved on which the light changes, the patch that each is part of, and which were asked for; none if there are none.
-    fn halved(&self, stage: &Stage, solver: &Solver<'_>) -> Result<Option<(PatchMesh, Vec<usize>, Vec<u32>)>, Failure> {
+    /// Halves those patches on which the light changes; none if there are none.
+    fn halved(&self, stage: &Stage, solver: &Solver<'_>) -> Result<Option<Halved>, Failure> {
         let Some(mesh) = &stage.mesh else { return Ok(None) };
         let gather = Gather::new(&stage.exchange, solver.emission(), solver.reflectance(), solver.radiosity());
         let uneven = uneven_patches(&stage.patches, &stage.regions, &gather, self.asked.gradient)
@@ -132,7 +143,7 @@ impl Work<'_> {
             return Ok(None);
         }
         let (mesh, parents) = mesh.halved(|patch| uneven[patch]);
-        Ok(Some((mesh, parents, list)))
+        Ok(Some(Halved { mesh, parents, list }))
     }
 
     fn solve_stage(&self, keeping: &Keeping, stage: &Stage, solver: &mut Solver<'_>) -> Result<(), Failure> {
@@ -156,7 +167,7 @@ impl Work<'_> {
         result.map_err(|error| self.asked.about(&error))?;
         failure.map_or(Ok(()), Err)?;
         self.keep(keeping, solver)?;
-        rows.map_or(Ok(()), |rows| rows.discard().map_err(failed))
+        rows.map_or(Ok(()), |rows| rows.discard().map_err(|error| failed(&error)))
     }
 
     /// Computes all rows, and keeps them beside the state, if there is one, until it is solved.
@@ -169,7 +180,7 @@ impl Work<'_> {
         let patches = stage.exchange.patches();
         let job = MatrixJob::new(&stage.patches, patches).with_option("--tolerance", self.asked.tolerance);
         let mut writer = match self.asked.rows_file(keeping.halved.len() as u32) {
-            Some(path) if self.asked.resume => {
+            Some(path) if self.asked.keep.resume => {
                 Some(MatrixWriter::resume_with(&path, &job, |row| solver.take_row(row.clone())))
             }
             Some(path) => {
@@ -182,7 +193,7 @@ impl Work<'_> {
             None => None,
         }
         .transpose()
-        .map_err(failed)?;
+        .map_err(|error| failed(&error))?;
         if writer.is_some() {
             // Rows alone do not tell what is halved.
             self.keep(keeping, solver)?;
@@ -192,7 +203,9 @@ impl Work<'_> {
         solver
             .compute_rows(first, |row| {
                 progress.add(1);
-                writer.as_mut().map_or(Ok(()), |writer| writer.row(row).map_err(|error| Stopped::Failed(failed(error))))
+                writer
+                    .as_mut()
+                    .map_or(Ok(()), |writer| writer.row(row).map_err(|error| Stopped::Failed(failed(&error))))
             })
             .map_err(|stopped| match stopped {
                 Stopped::Failed(failure) => failure,
@@ -214,7 +227,7 @@ impl From<RadiosityError> for Stopped {
     }
 }
 
-fn failed(error: MatrixError) -> Failure {
+fn failed(error: &MatrixError) -> Failure {
     Failure::Work(error.to_string())
 }
 
