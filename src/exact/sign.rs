@@ -44,6 +44,7 @@ impl Sign {
     }
 
     /// True for [`Sign::Zero`].
+    #[inline]
     pub fn is_zero(self) -> bool {
         self == Self::Zero
     }
@@ -52,6 +53,7 @@ impl Sign {
 impl Neg for Sign {
     type Output = Self;
 
+    #[inline]
     fn neg(self) -> Self {
         match self {
             Self::Negative => Self::Positive,

@@ -87,7 +87,7 @@ impl Blockers<'_> {
         if is_over(root) {
             return;
         }
-        let mut all = |node: u32, seen: Seen, blockers: &[u32], candidates: &[Blocker]| {
+        let mut all = |node: u32, seen: Seen, blockers: &[u32], candidates: &[Blocker<'_>]| {
             for &element in tree.elements(node).iter().filter(|&&element| !is_left_out(element)) {
                 found(element, seen, &mut blockers.iter().map(|&blocker| candidates[blocker as usize].facet));
             }
@@ -98,7 +98,7 @@ impl Blockers<'_> {
         let target = &self.facets.all[facet as usize];
         let own_ring = &self.facets.all[around.facet as usize].ring;
         let shaft = Shaft::between(&from.ring, &target.ring);
-        let candidates = self.candidates(around, from, facet, &shaft);
+        let mut candidates = self.candidates(around, from, facet, &shaft);
         let mut corners = Vec::new();
         let mut visits = vec![Visit { node: root, blockers: (0..candidates.len() as u32).collect() }];
         while let Some(Visit { node, mut blockers }) = visits.pop() {
@@ -149,45 +149,43 @@ impl Blockers<'_> {
         let reach = element.radius * (1e-12 + element.rounding);
         let low = element.ring.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)) - reach;
         let high = element.ring.iter().fold(DVec3::NEG_INFINITY, |high, &p| high.max(p)) + reach;
-        let others = self.within(|other_low, other_high| low.cmple(other_high).all() && high.cmpge(other_low).all());
+        let others =
+            self.within(|_| true, |other_low, other_high| low.cmple(other_high).all() && high.cmpge(other_low).all());
         let frame = &self.elements.frames[element.facet as usize];
         parts(element, frame, &contacts(element.facet, self.facets, frame, &others))
     }
 
-    /// The facets that may block light between an element and a whole facet.
-    fn candidates(&self, around: &Around, from: &Element, facet: u32, shaft: &Shaft) -> Vec<Blocker> {
+    /// The facets that may block light between an element and a whole facet, ascending.
+    fn candidates<'b>(&'b self, around: &Around, from: &'b Element, facet: u32, shaft: &Shaft) -> Vec<Blocker<'b>> {
         let frame = &self.elements.frames[facet as usize];
-        let mut candidates = Vec::new();
-        for number in self.within(|low, high| shaft.may_meet(low, high)) {
-            if number == around.facet
-                || number == facet
-                || matches!(around.facet_lies(self.facets, number), Lies::Behind | Lies::On)
-                || self.is_redundant(around.facet.min(facet), number)
-            {
-                continue;
-            }
+        // What is behind the facet, or in its plane, hides nothing of it.
+        let may_hide = |&number: &u32| {
+            number != around.facet
+                && number != facet
+                && !matches!(around.facet_lies(self.facets, number), Lies::Behind | Lies::On)
+                && !matches!(self.facets.lies(number, facet), Lies::Behind | Lies::On)
+                && !self.is_redundant(around.facet.min(facet), number)
+        };
+        let blocker = |number: u32| {
             let blocker = &self.facets.all[number as usize];
             let own = match around.lies(self.facets, number) {
                 Lies::Across => Lies::of(&from.ring, blocker.spanning),
                 lies => lies,
             };
             let lies = self.facets.lies(facet, number);
-            // What is behind the facet, or in its plane, hides nothing of it.
-            let is_behind = matches!(self.facets.lies(number, facet), Lies::Behind | Lies::On);
-            if !own.is_beside(lies) && !is_behind && !shaft.excludes(&blocker.ring) {
-                let what = (number, &blocker.ring[..], blocker.spanning);
-                candidates.push(Blocker::between(&from.ring, [own, lies], frame, what));
-            }
-        }
-        candidates
+            let what = (number, &blocker.ring[..], blocker.spanning);
+            (!own.is_beside(lies) && !shaft.excludes(&blocker.ring))
+                .then(|| Blocker::between(&from.ring, [own, lies], frame, what))
+        };
+        self.within(may_hide, |low, high| shaft.may_meet(low, high)).into_iter().filter_map(blocker).collect()
     }
 
-    /// The facets in boxes that may meet something, ascending.
-    fn within(&self, may_meet: impl Fn(DVec3, DVec3) -> bool) -> Vec<u32> {
+    /// The facets of those wanted in boxes that may meet something, ascending.
+    fn within(&self, is_wanted: impl Fn(&u32) -> bool, may_meet: impl Fn(DVec3, DVec3) -> bool) -> Vec<u32> {
         let SceneOrder::Boxes(bvh) = &self.facets.order else { unreachable!("views of facets are taken by boxes") };
         let hierarchy = &*bvh.hierarchy;
         let mut stack: Vec<u32> = (0..hierarchy.nodes.len().min(1) as u32).collect();
-        let mut pieces = Vec::new();
+        let mut numbers = Vec::new();
         while let Some(number) = stack.pop() {
             let node = &hierarchy.nodes[number as usize];
             if !may_meet(node.bounds.low, node.bounds.high) {
@@ -196,16 +194,16 @@ impl Blockers<'_> {
             match &node.content {
                 Content::Boxes(halves) => stack.extend(halves),
                 Content::Panels(range) => {
-                    for &panel in &hierarchy.order[range.start as usize..range.end as usize] {
-                        hierarchy.panels.pieces(panel, &mut Vec::new(), |piece| pieces.push(piece));
+                    for facet in self.facets.of_panels(range.clone()) {
+                        let [low, high] = self.facets.all[*facet as usize].bounds;
+                        if is_wanted(facet) && may_meet(low, high) {
+                            numbers.push(*facet);
+                        }
                     }
                 }
             }
         }
-        let scene = self.facets.order.scene();
-        let mut numbers: Vec<u32> = pieces.into_iter().map(|piece| scene.piece(piece).polygon().0).collect();
         numbers.sort_unstable();
-        numbers.dedup();
         numbers
     }
 

@@ -53,9 +53,23 @@ impl Rule {
         rule
     }
 
-    /// Degrees 7, 5, and 3 twice.
+    /// Degrees 7, 5, and 3 twice, with looks beside sides and corners.
     pub(super) fn genz_malik() -> Self {
-        let (l2, l3, l5) = ((9.0_f64 / 70.0).sqrt(), 0.9_f64.sqrt(), (9.0_f64 / 19.0).sqrt());
+        let [l2, l3, l5] = distances();
+        let mut rule = Self::genz_malik_inside();
+        // The fourth-degree polynomials along the axes and the diagonals, at their ends.
+        for (number, sign) in [-1.0, 1.0].into_iter().enumerate() {
+            rule.foretell(SIDES + number, [sign, 0.0], [l2, l3]);
+            rule.foretell(SIDES + 2 + number, [0.0, sign], [l2, l3]);
+            rule.foretell(CORNERS + number, [sign, sign], [l5, l3]);
+            rule.foretell(CORNERS + 2 + number, [sign, -sign], [l5, l3]);
+        }
+        rule
+    }
+
+    /// The same without these looks.
+    pub(super) fn genz_malik_inside() -> Self {
+        let [l2, l3, l5] = distances();
         let ratio = l2 * l2 / (l3 * l3);
         // Of degree 3: four points that have a mean square of 1 / 3 with the middle.
         let (cross, square) = (1.0 / (6.0 * l3 * l3), 1.0 / (12.0 * l5 * l5));
@@ -73,13 +87,6 @@ impl Rule {
                 rule.add([sign * l3, other * l3], &[(0, 200.0 / 19683.0), (1, 25.0 / 729.0)]);
                 rule.add([sign * l5, other * l5], &[(0, 6859.0 / 19683.0 / 4.0), (3, square)]);
             }
-        }
-        // The fourth-degree polynomials along the axes and the diagonals, at their ends.
-        for (number, sign) in [-1.0, 1.0].into_iter().enumerate() {
-            rule.foretell(SIDES + number, [sign, 0.0], [l2, l3]);
-            rule.foretell(SIDES + 2 + number, [0.0, sign], [l2, l3]);
-            rule.foretell(CORNERS + number, [sign, sign], [l5, l3]);
-            rule.foretell(CORNERS + 2 + number, [sign, -sign], [l5, l3]);
         }
         rule
     }
@@ -108,6 +115,11 @@ impl Rule {
         }
         self.add([u * BESIDE, v * BESIDE], &[(sum, -1.0)]);
     }
+}
+
+/// How far the points of Genz and Malik are from the middle: near and far along the axes, the latter along the diagonals, too, and others on these.
+fn distances() -> [f64; 3] {
+    [9.0_f64 / 70.0, 0.9, 9.0 / 19.0].map(f64::sqrt)
 }
 
 /// What a rule tells of one integrand over a quadrilateral.

@@ -283,18 +283,7 @@ impl ElementRows<'_> {
         space: &mut PartlySpace,
     ) -> Share {
         let Blockers { facets, elements, .. } = self.blockers;
-        let [from_frame, to_frame] = [from, to].map(|element| &elements.frames[element.facet as usize]);
-        let blocker = |&facet: &u32| (&facets.all[facet as usize].ring[..], &elements.frames[facet as usize]);
-        let has_horizon = |of: &Element, over: &Element| facets.lies(of.facet, over.facet) == Lies::Across;
-        let partly = Partly {
-            from,
-            from_frame,
-            parts,
-            to,
-            to_frame,
-            has_horizon: [has_horizon(to, from), has_horizon(from, to)],
-            blockers: &between.iter().map(blocker).collect::<Vec<_>>(),
-        };
+        let partly = Partly { facets, elements, from, parts, to, between };
         partly.integrate(allowed, self.most_views, space)
     }
 

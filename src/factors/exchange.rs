@@ -188,7 +188,8 @@ impl Exchange {
             let weight = own / area;
             let weighted =
                 |share: Share| Share { factor: weight * share.factor, error: weight * (share.error + rounding) };
-            shares.extend(row.into_iter().map(|(column, share)| (column, weighted(share))));
+            let seen = row.into_iter().filter(|&(_, share)| share != Share::default());
+            shares.extend(seen.map(|(column, share)| (column, weighted(share))));
         }
         // Stable, so that sums do not depend on anything but the order of elements.
         shares.sort_by_key(|&(column, _)| column);

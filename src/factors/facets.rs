@@ -3,12 +3,15 @@
 //! What a view costs is what there is to tell apart in it (docs/performance.md). Between patches of one facet there is nothing to tell
 //! apart for the eye: the part of a facet that is seen is divided among its patches afterwards, in its plane.
 
+use super::bodies::{Bodies, FacetSide};
+use super::element::Element;
 use super::placement::Placement;
 use super::shaft::Lies;
 use crate::bvh::{self, SceneBvh, Solid};
 use crate::contour::SceneOrder;
 use crate::scene::{FaceSpec, Material, PieceId, Scene, SceneError};
 use glam::DVec3;
+use std::ops::Range;
 
 /// A scene whose polygons are the facets of another one.
 pub(super) struct Facets {
@@ -19,6 +22,10 @@ pub(super) struct Facets {
     pub(super) of_piece: Vec<u32>,
     /// Where they are: all coordinates here are local to it.
     pub(super) placement: Placement,
+    pub(super) bodies: Bodies,
+    /// The facets of the panels of the boxes, in their order, and where those of each begin.
+    in_boxes: Vec<u32>,
+    first_in: Vec<u32>,
     /// How each facet lies to the plane of each, row by row of planes, if there are few enough to keep that.
     lies: Vec<Lies>,
 }
@@ -31,6 +38,8 @@ pub(super) struct Facet {
     pub(super) ring: Vec<DVec3>,
     /// Three corners that are not in line, which run the same way.
     pub(super) spanning: [DVec3; 3],
+    /// The box around it.
+    pub(super) bounds: [DVec3; 2],
     /// True if another facet may lie on part of it in its plane: which one is seen there takes a view.
     pub(super) is_covered: bool,
     /// The solid of the scene that it is part of; its box is that of the scene, not scaled.
@@ -65,7 +74,10 @@ impl Facets {
             }
             let ring: Vec<DVec3> = joined.ring.iter().map(|&vertex| placement.local(scene.vertex(vertex))).collect();
             let spanning = spanning(&ring);
-            facets.push(Facet { ring, spanning, is_covered: covered(joined.pieces[0]), solid: joined.solid });
+            let low = ring.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+            let high = ring.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+            let bounds = [low, high];
+            facets.push(Facet { ring, spanning, bounds, is_covered: covered(joined.pieces[0]), solid: joined.solid });
             let ring = joined.ring.iter().map(|vertex| vertex.index()).collect();
             builder.add_face(FaceSpec { rings: vec![ring], object, material });
         }
@@ -75,7 +87,10 @@ impl Facets {
         for plane in planes {
             lies.extend(facets.iter().map(|facet| Lies::of(&facet.ring, plane.spanning)));
         }
-        Ok(Self { order: SceneBvh::build(&scene).into(), all: facets, of_piece, placement, lies })
+        let bodies = Bodies::of(&facets, |facet, plane| lies_in(&lies, &facets, facet, plane));
+        let bvh = SceneBvh::build(&scene);
+        let (in_boxes, first_in) = of_panels(&bvh);
+        Ok(Self { order: bvh.into(), all: facets, of_piece, placement, bodies, in_boxes, first_in, lies })
     }
 }
 
@@ -87,10 +102,47 @@ impl Facets {
 
     /// How a facet lies to the plane of another one.
     pub(super) fn lies(&self, facet: u32, plane: u32) -> Lies {
-        let place = plane as usize * self.all.len() + facet as usize;
-        let other = || Lies::of(&self.all[facet as usize].ring, self.all[plane as usize].spanning);
-        self.lies.get(place).copied().unwrap_or_else(other)
+        lies_in(&self.lies, &self.all, facet, plane)
     }
+
+    /// How an element lies to the plane of another facet.
+    pub(super) fn lies_of(&self, element: &Element, plane: u32) -> Lies {
+        match self.lies(element.facet, plane) {
+            Lies::Across => Lies::of(&element.ring, self.all[plane as usize].spanning),
+            lies => lies,
+        }
+    }
+
+    /// Those of panels of the boxes, by their places.
+    pub(super) fn of_panels(&self, range: Range<u32>) -> &[u32] {
+        let [start, end] = [range.start, range.end].map(|place| self.first_in[place as usize] as usize);
+        &self.in_boxes[start..end]
+    }
+
+    /// The name of a side of a facet, by its place in the ring.
+    pub(super) fn side(&self, facet: u32, place: u32) -> FacetSide {
+        self.bodies.side(facet, place)
+    }
+}
+
+/// The polygons of the panels of a scene's boxes, in their order, and where those of each begin.
+fn of_panels(bvh: &SceneBvh) -> (Vec<u32>, Vec<u32>) {
+    let hierarchy = &*bvh.hierarchy;
+    let (mut polygons, mut first) = (Vec::new(), vec![0]);
+    for &panel in &hierarchy.order {
+        hierarchy
+            .panels
+            .pieces(panel, &mut Vec::new(), |piece| polygons.push(hierarchy.scene.piece(piece).polygon().0));
+        first.push(polygons.len() as u32);
+    }
+    (polygons, first)
+}
+
+/// How a facet lies to the plane of another one, if all do or only those asked for are known.
+fn lies_in(lies: &[Lies], facets: &[Facet], facet: u32, plane: u32) -> Lies {
+    let place = plane as usize * facets.len() + facet as usize;
+    let other = || Lies::of(&facets[facet as usize].ring, facets[plane as usize].spanning);
+    lies.get(place).copied().unwrap_or_else(other)
 }
 
 /// The corners of a convex ring that span the largest triangle with its first edge's start, in their order.

@@ -6,6 +6,7 @@
 //! `docs/form-factors.md` tells how, with what accuracy and at what cost.
 
 mod blockers;
+mod bodies;
 mod closure;
 mod contacts;
 mod contour;
@@ -32,6 +33,7 @@ mod received;
 mod reciprocity;
 mod row;
 mod rows_once;
+mod screens;
 mod seen;
 mod shaft;
 mod shape;

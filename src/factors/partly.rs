@@ -1,37 +1,45 @@
 //! The exchange between two elements that see each other partly: an integral over one of them, of the closed form of what is seen of the other.
 //!
-//! It is divided into quadrilaterals, the worst of which are halved until the estimates of their errors sum to no more than what is allowed. A shadow that
+//! It is divided into quadrilaterals, the worst of which are halved or quartered until the estimates of their errors sum to no more than what is allowed. A shadow that
 //! covers a corner or a side of the element only may be seen by none of the first points. It is seen from the other element's corners, as light goes both ways: if, of what they see
 //! of the element, sides of blockers are bounds that are none from any of the points, estimates are raised.
 
+use super::bodies::FacetSide;
 use super::cubature::{Rule, Sample, halves};
-use super::element::{Element, quads};
+use super::element::{Element, Elements, quads};
+use super::facets::Facets;
 use super::hidden::{HiddenSpace, Target};
 use super::row::Share;
-use super::shape::Frame;
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+/// What is seen of an element is nothing if it is less than this part of what would be.
+const ROUNDING: f64 = 1e-12;
 /// Few points are enough where no more than so many times what is allowed would arrive with nothing between.
 const SMALL: f64 = 8.0;
 /// The part of that which few points are taken to be wrong by at least; like the next one, chosen by what entries of dense cities were off by.
 const OF_FEW: f64 = 0.1;
 /// The part of it which a shadow is taken to cover that none of many points has seen.
 const OF_MANY: f64 = 0.015;
+/// The part of their estimates that parts of divided elements are wrong by; their sum is taken to be no more than so many times the root of the sum of their squares,
+/// as errors have both signs. Chosen by dense cities, too: in rows of them estimates were ten times too large, in the middle, without.
+const OF_PARTS: f64 = 0.6;
+const OF_ROOT: f64 = 2.0;
+/// As long as so many times what is allowed is left, parts are quartered that are wrong by this part of it.
+const FAR: f64 = 3.0;
+const OF_ALLOWED: f64 = 0.1;
 
 /// Two elements with what is between them.
 pub(super) struct Partly<'a> {
+    pub(super) facets: &'a Facets,
+    pub(super) elements: &'a Elements,
     pub(super) from: &'a Element,
-    pub(super) from_frame: &'a Frame,
     /// It in parts between the lines where others stand on it.
     pub(super) parts: &'a [Vec<DVec3>],
     pub(super) to: &'a Element,
-    pub(super) to_frame: &'a Frame,
-    /// Whether the other element is on both sides of the plane of the one it is seen from, and the other way round.
-    pub(super) has_horizon: [bool; 2],
-    /// Corners, counter-clockwise seen from the front, and the plane.
-    pub(super) blockers: &'a [(&'a [DVec3], &'a Frame)],
+    /// Facets, ascending.
+    pub(super) between: &'a [u32],
 }
 
 /// Memory and rules that are used again.
@@ -40,12 +48,13 @@ pub(super) struct PartlySpace {
     back: HiddenSpace,
     few: Rule,
     many: Rule,
+    inside: Rule,
 }
 
 impl Default for PartlySpace {
     fn default() -> Self {
         let (there, back) = (HiddenSpace::default(), HiddenSpace::default());
-        Self { there, back, few: Rule::first(), many: Rule::genz_malik() }
+        Self { there, back, few: Rule::first(), many: Rule::genz_malik(), inside: Rule::genz_malik_inside() }
     }
 }
 
@@ -53,33 +62,42 @@ impl Partly<'_> {
     /// The form factor from the element to what it sees of the other, with an estimate of its error that is not above `allowed` if `most` points or so are
     /// enough for that.
     pub(super) fn integrate(&self, allowed: f64, most: usize, space: &mut PartlySpace) -> Share {
-        let PartlySpace { there, back, few, many } = space;
-        let blockers = self.blockers.iter().copied();
-        let target = Target::new(self.to, self.to_frame, self.from_frame, self.has_horizon[0], blockers, there);
+        let PartlySpace { there, back, few, many, inside } = space;
+        let target = Target::new(self.facets, self.elements, [self.from, self.to], self.between, there);
         // With nothing between, what is seen changes steadily.
         let eyes = self.from.ring.iter().copied().chain([self.from.centre]);
         let at_most = eyes.map(|eye| target.whole_factor(eye, there)).fold(0.0, f64::max);
         if at_most <= SMALL * allowed {
             let mut quads = self.sample(few, &target, there);
             quads.worsen(OF_FEW * at_most);
-            if quads.error <= allowed {
-                return quads.total();
+            if quads.error() <= allowed {
+                return quads.total(at_most);
             }
         }
         there.bounds = Some(Vec::new());
         let mut quads = self.sample(many, &target, there);
         let known = there.bounds.take().unwrap_or_default();
         // What is below that is not worth a look.
-        if OF_MANY * at_most + quads.error > allowed && self.look_back(known, back) {
+        if OF_MANY * at_most + quads.error() > allowed && self.look_back(known, back) {
             quads.worsen(OF_MANY * at_most);
         }
-        while quads.error > allowed && quads.count * many.count() < most {
+        let mut points = quads.waiting.len() * many.count();
+        while quads.error() > allowed && points < most {
+            let is_far = quads.error() > FAR * allowed;
             let Some(worst) = quads.pop() else { break };
-            for half in halves(worst.corners, worst.sample.halve_first) {
-                quads.add(half, many.sample(half, self.from.area, |point| target.factor(point, there)));
+            let mut add = |corners: [DVec3; 4]| {
+                points += inside.count();
+                let sample = inside.sample(corners, self.from.area, |point| target.factor(point, there));
+                quads.add(corners, Sample { error: OF_PARTS * sample.error, ..sample });
+            };
+            let first = worst.sample.halve_first;
+            if is_far && worst.error() > OF_ALLOWED * allowed {
+                halves(worst.corners, first).into_iter().flat_map(|half| halves(half, !first)).for_each(&mut add);
+            } else {
+                halves(worst.corners, first).into_iter().for_each(&mut add);
             }
         }
-        quads.total()
+        quads.total(at_most)
     }
 
     /// All of the element.
@@ -95,9 +113,8 @@ impl Partly<'_> {
     }
 
     /// True if, of what corners of the other element see of this one, sides are bounds that are not known.
-    fn look_back(&self, known: Vec<(u32, u32)>, space: &mut HiddenSpace) -> bool {
-        let blockers = self.blockers.iter().copied();
-        let own = Target::new(self.from, self.from_frame, self.to_frame, self.has_horizon[1], blockers, space);
+    fn look_back(&self, known: Vec<FacetSide>, space: &mut HiddenSpace) -> bool {
+        let own = Target::new(self.facets, self.elements, [self.to, self.from], self.between, space);
         let count = known.len();
         space.bounds = Some(known);
         self.to.ring.iter().for_each(|&corner| own.note_bounds(corner, space));
@@ -109,9 +126,16 @@ impl Partly<'_> {
 struct Quad {
     corners: [DVec3; 4],
     sample: Sample,
-    error: f64,
+    /// What it may be wrong by besides, as something may have been missed.
+    missed: f64,
     /// In the order of their making.
     number: usize,
+}
+
+impl Quad {
+    fn error(&self) -> f64 {
+        self.sample.error + self.missed
+    }
 }
 
 impl PartialEq for Quad {
@@ -130,7 +154,7 @@ impl PartialOrd for Quad {
 
 impl Ord for Quad {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.error.total_cmp(&other.error).then(other.number.cmp(&self.number))
+        self.error().total_cmp(&other.error()).then(other.number.cmp(&self.number))
     }
 }
 
@@ -140,35 +164,47 @@ struct Quads {
     waiting: BinaryHeap<Quad>,
     /// How many have been made.
     count: usize,
+    /// The sums of their estimates, of the squares of these, and of what may have been missed.
     error: f64,
+    squares: f64,
+    missed: f64,
 }
 
 impl Quads {
     fn add(&mut self, corners: [DVec3; 4], sample: Sample) {
         self.count += 1;
         self.error += sample.error;
-        self.waiting.push(Quad { corners, sample, error: sample.error, number: self.count });
+        self.squares += sample.error * sample.error;
+        self.waiting.push(Quad { corners, sample, missed: 0.0, number: self.count });
     }
 
     /// Takes out the one with the largest estimate.
     fn pop(&mut self) -> Option<Quad> {
         let worst = self.waiting.pop()?;
-        self.error -= worst.error;
+        self.error -= worst.sample.error;
+        self.squares -= worst.sample.error * worst.sample.error;
+        self.missed -= worst.missed;
         Some(worst)
     }
 
     /// Adds to the estimates, by equal parts.
     fn worsen(&mut self, error: f64) {
-        self.error += error;
+        self.missed += error;
         let part = error / self.waiting.len() as f64;
         let all = std::mem::take(&mut self.waiting).into_iter();
-        self.waiting = all.map(|quad| Quad { error: quad.error + part, ..quad }).collect();
+        self.waiting = all.map(|quad| Quad { missed: quad.missed + part, ..quad }).collect();
     }
 
-    fn total(self) -> Share {
-        self.waiting.into_sorted_vec().iter().fold(Share::default(), |sum, quad| Share {
-            factor: sum.factor + quad.sample.value,
-            error: sum.error + quad.error,
-        })
+    /// An estimate of the error of the sum.
+    fn error(&self) -> f64 {
+        self.error.max(0.0).min(OF_ROOT * self.squares.max(0.0).sqrt()) + self.missed
+    }
+
+    /// The integral, of a factor that is nowhere larger than this with nothing between.
+    fn total(self, at_most: f64) -> Share {
+        let error = self.error();
+        let factor = self.waiting.into_sorted_vec().iter().fold(0.0, |sum, quad| sum + quad.sample.value);
+        // Rounding leaves slivers of what is hidden.
+        if factor.abs().max(error) <= ROUNDING * at_most { Share::default() } else { Share { factor, error } }
     }
 }

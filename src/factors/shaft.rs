@@ -38,6 +38,21 @@ impl Plane {
     }
 }
 
+impl Plane {
+    /// True if all points of a box are certainly on the other side than this one.
+    ///
+    /// The filter of [`Self::side`] with the box's farthest corner, and as much again for rounding of its centre and of what it reaches out.
+    #[inline]
+    fn is_beyond(&self, side: Sign, centre: DVec3, half: DVec3) -> bool {
+        let r = centre - self.points[0];
+        let height = self.normal.dot(r);
+        let reach = self.normal.abs().dot(half);
+        let bound = 20.0 * U * self.permanent.dot(r.abs() + half);
+        let below = if side == Sign::Positive { -height } else { height };
+        bound > 1e-180 && bound < 1e120 && below - reach > bound
+    }
+}
+
 /// The sign of `orient3d`, where zero is likely.
 fn exact_side([a, b, c]: [DVec3; 3], p: DVec3) -> Sign {
     if is_on_evidently([a, b, c], p) { Sign::Zero } else { orient3d(a, b, c, p) }
@@ -45,6 +60,7 @@ fn exact_side([a, b, c]: [DVec3; 3], p: DVec3) -> Sign {
 
 /// True if a point is on a plane for a reason that shows without arithmetic, as is the rule among things with axis-parallel sides: it is one of the three,
 /// in a plane of equal coordinates with all of them, or beside one of them in a direction that two of them are apart in.
+#[inline]
 fn is_on_evidently([a, b, c]: [DVec3; 3], p: DVec3) -> bool {
     let same = |p: DVec3, q: DVec3| p.cmpeq(q).bitmask();
     let [ab, bc, ca] = [same(a, b), same(b, c), same(c, a)];
@@ -144,9 +160,12 @@ impl Shaft {
         Self { planes, low, high }
     }
 
-    /// True if a box may have points inside of the shaft's own box.
+    /// False if a box is certainly outside of the shaft's own box, or of one of its planes.
     pub(super) fn may_meet(&self, low: DVec3, high: DVec3) -> bool {
-        self.low.cmple(high).all() && self.high.cmpge(low).all()
+        let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+        self.low.cmple(high).all()
+            && self.high.cmpge(low).all()
+            && !self.planes.iter().any(|(plane, side)| plane.is_beyond(*side, centre, half))
     }
 
     /// True if a polygon is certainly outside, though it may touch.
@@ -209,6 +228,7 @@ impl Line {
     }
 
     /// The same for whatever is within rounding of the corner; zero if that is not sure.
+    #[inline]
     fn side_about(&self, corner: &Corner) -> Sign {
         let value = self.along.dot(corner.flat) + self.offset;
         // A point is off by 10 u times the coordinates at most: a third of what the bound is for.
@@ -233,44 +253,41 @@ impl Line {
 }
 
 /// A convex polygon that may be between an element and a facet.
-pub(super) struct Blocker {
+pub(super) struct Blocker<'a> {
     pub(super) facet: u32,
+    ring: &'a [DVec3],
+    from: &'a [DVec3],
+    frame: &'a Frame,
     /// Of the element to its plane, and of the facet.
     lies: [Lies; 2],
     /// Its own plane.
-    plane: Line,
-    /// Planes through its sides and the corners of the element, side by side.
-    lines: Vec<Line>,
-    corners: usize,
+    spanning: [DVec3; 3],
+    plane: Option<Line>,
+    /// Planes through its sides and the corners of the element, side by side, as far as they have been asked for.
+    lines: Vec<Option<Line>>,
 }
 
-impl Blocker {
+impl<'a> Blocker<'a> {
     /// Between an element, all of which lies so to the plane of the blocker, and the facet with that frame, which lies so.
     pub(super) fn between(
-        from: &[DVec3],
+        from: &'a [DVec3],
         lies: [Lies; 2],
-        frame: &Frame,
-        (facet, ring, spanning): (u32, &[DVec3], [DVec3; 3]),
+        frame: &'a Frame,
+        (facet, ring, spanning): (u32, &'a [DVec3], [DVec3; 3]),
     ) -> Self {
-        // Lines of sight are told apart only if all of them pass its plane one way.
-        let lines = match lies[0] {
-            Lies::Front | Lies::Behind => {
-                let lines = sides(ring).flat_map(|[a, b]| from.iter().map(move |&p| Line::through([a, b, p], frame)));
-                lines.collect()
-            }
-            Lies::On | Lies::Across => Vec::new(),
-        };
-        Self { facet, lies, plane: Line::through(spanning, frame), lines, corners: from.len() }
+        Self { facet, ring, from, frame, lies, spanning, plane: None, lines: Vec::new() }
     }
 
     /// What it does to light from the element to a convex part of the facet: lines between corners pass its sides all inside, or one all outside, or
     /// it cannot be told. If corners are not exact nothing is told that would not be of any part within them.
-    pub(super) fn blocks(&self, part: &[Corner], is_exact: bool) -> Blocks {
+    pub(super) fn blocks(&mut self, part: &[Corner], is_exact: bool) -> Blocks {
+        let Self { ring, from, frame, spanning, .. } = *self;
         let [own, whole] = self.lies;
         let side = |line: &Line, corner: &Corner| if is_exact { line.side(corner) } else { line.side_about(corner) };
         let other = match whole {
             Lies::Across => {
-                let mut signs = part.iter().map(|corner| side(&self.plane, corner));
+                let plane = self.plane.get_or_insert_with(|| Line::through(spanning, frame));
+                let mut signs = part.iter().map(|corner| side(plane, corner));
                 if !is_exact && signs.clone().any(Sign::is_zero) {
                     return Blocks::Unknown;
                 }
@@ -281,21 +298,26 @@ impl Blocker {
         if own.is_beside(other) {
             return Blocks::Nothing;
         }
+        // Lines of sight are told apart only if all of them pass its plane one way.
         // Seen from its front, with the lines of sight going in, a side that runs counter-clockwise has its inside to the left.
         let inside = match (own, other) {
             (Lies::Front, Lies::Behind) => Sign::Negative,
             (Lies::Behind, Lies::Front) => Sign::Positive,
             _ => return Blocks::Unknown,
         };
+        if self.lines.is_empty() {
+            self.lines.resize_with(ring.len() * from.len(), || None);
+        }
         let mut hides = true;
-        for lines in self.lines.chunks_exact(self.corners) {
+        for ([a, b], lines) in sides(ring).zip(self.lines.chunks_exact_mut(from.len())) {
             let (mut all_inside, mut all_outside) = (true, true);
-            'lines: for line in lines {
+            'lines: for (line, &p) in lines.iter_mut().zip(from) {
+                let line = line.get_or_insert_with(|| Line::through([a, b, p], frame));
                 for corner in part {
                     let sign = side(line, corner);
                     all_outside &= sign == -inside || is_exact && sign.is_zero();
                     all_inside &= sign == inside || is_exact && sign.is_zero();
-                    if !all_inside && !all_outside {
+                    if !all_outside && !(hides && all_inside) {
                         break 'lines;
                     }
                 }
@@ -325,7 +347,7 @@ mod tests {
             let frame = Frame::through([behind[0], behind[1], behind[2]]);
             let spanning = [ring[0], ring[1], ring[2]];
             let lies = [Lies::of(front, spanning), Lies::of(behind, spanning)];
-            let blocker = Blocker::between(front, lies, &frame, (0, ring, spanning));
+            let mut blocker = Blocker::between(front, lies, &frame, (0, ring, spanning));
             let corners: Vec<Corner> = behind.iter().map(|&at| Corner { at, flat: frame.flat(at) }).collect();
             blocker.blocks(&corners, true)
         };

@@ -21,6 +21,7 @@ impl Frame {
     }
 
     /// The coordinates of a point of the plane.
+    #[inline]
     pub(super) fn flat(&self, p: DVec3) -> DVec2 {
         let d = p - self.origin;
         DVec2::new(d.dot(self.u), d.dot(self.v))
@@ -32,21 +33,25 @@ impl Frame {
     }
 
     /// The coordinates of any point, with its height over the plane as the third.
+    #[inline]
     pub(super) fn local(&self, p: DVec3) -> DVec3 {
         self.turned(p - self.origin)
     }
 
     /// A vector along its coordinates and its normal.
+    #[inline]
     pub(super) fn turned(&self, v: DVec3) -> DVec3 {
         DVec3::new(v.dot(self.u), v.dot(self.v), v.dot(self.normal))
     }
 
     /// The unit vectors along its coordinates.
+    #[inline]
     pub(super) fn axes(&self) -> (DVec3, DVec3) {
         (self.u, self.v)
     }
 
     /// The height of a point over the plane.
+    #[inline]
     pub(super) fn height(&self, p: DVec3) -> f64 {
         self.normal.dot(p - self.origin)
     }

@@ -1,0 +1,221 @@
+//! What casts shadows on an element: facets, and bodies of facets, as they are seen from another element.
+
+use super::bodies::{Body, FacetSide};
+use super::element::{Element, Elements};
+use super::facets::Facets;
+use super::shaft::Lies;
+use super::shape::{Frame, sides};
+use glam::{DVec2, DVec3};
+use std::ops::Range;
+
+/// All that may be between two elements, in the frame of one of them, and memory that is used again.
+#[derive(Default)]
+pub(super) struct Screens {
+    pub(super) all: Vec<Screen>,
+    faces: Vec<Face>,
+    edges: Vec<Edge>,
+    corners: Vec<DVec3>,
+    /// How high the point is over each face of a screen.
+    heights: Vec<f64>,
+}
+
+/// Something convex that hides what is behind it.
+pub(super) struct Screen {
+    faces: Range<u32>,
+    edges: Range<u32>,
+    /// True if it has one face, which is seen from both sides; otherwise all faces are seen from outside.
+    is_flat: bool,
+}
+
+/// A face that may be seen.
+struct Face {
+    normal: DVec3,
+    /// How high the origin is over its plane.
+    offset: f64,
+    /// True if some of what it hides may be on the near side of its plane.
+    cuts: bool,
+    facet: u32,
+}
+
+/// What is no face that may be seen.
+const NEVER: u32 = u32::MAX;
+
+struct Edge {
+    /// Places of corners, as they follow each other around the face to the left of it.
+    ends: [u32; 2],
+    /// Faces beside it, by their numbers in the screen.
+    left: u32,
+    right: u32,
+    side: FacetSide,
+}
+
+/// Where `along . p + offset` is not negative.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HalfPlane {
+    along: DVec2,
+    offset: f64,
+}
+
+impl HalfPlane {
+    /// What is above a plane, in another one.
+    #[inline]
+    pub(super) fn above(normal: DVec3, offset: f64) -> Self {
+        Self { along: normal.truncate(), offset }
+    }
+
+    #[inline]
+    pub(super) fn height(&self, p: DVec2) -> f64 {
+        self.along.dot(p) + self.offset
+    }
+
+    /// True if a side of a ring is on its boundary, up to rounding.
+    pub(super) fn bounds(&self, ring: &[DVec2]) -> bool {
+        let length = self.along.length();
+        let is_on = |p: DVec2| self.height(p).abs() <= 1e-9 * (length * p.abs().max_element()).max(self.offset.abs());
+        sides(ring).any(|[a, b]| is_on(a) && is_on(b))
+    }
+}
+
+impl Screens {
+    /// Those of facets between one element and another one, in whose frame they are.
+    pub(super) fn set(&mut self, facets: &Facets, elements: &Elements, from: &Element, to: &Element, between: &[u32]) {
+        self.all.clear();
+        self.faces.clear();
+        self.edges.clear();
+        self.corners.clear();
+        let body_of = |facet: u32| facets.bodies.of_facet[facet as usize];
+        for (place, &facet) in between.iter().enumerate() {
+            let is_of = |body: u32| move |&other: &u32| body_of(other) == Some(body);
+            // One facet alone casts the same shadow as its body does in the shaft.
+            let whole = body_of(facet).filter(|&body| {
+                between.iter().filter(|other| is_of(body)(other)).count() > 1
+                    && is_seen_from_outside(&facets.bodies.all[body as usize], facets, from)
+            });
+            match whole {
+                None => self.add_facet(facets, elements, [from, to], facet),
+                Some(body) if between[..place].iter().any(is_of(body)) => {}
+                Some(body) => self.add_body(&facets.bodies.all[body as usize], facets, elements, [from, to]),
+            }
+        }
+    }
+
+    fn add_facet(&mut self, facets: &Facets, elements: &Elements, [from, to]: [&Element; 2], facet: u32) {
+        let frame = &elements.frames[to.facet as usize];
+        let [faces, edges] = [self.faces.len() as u32, self.edges.len() as u32];
+        let corners = self.corners.len() as u32;
+        let ring = &facets.all[facet as usize].ring;
+        self.corners.extend(ring.iter().map(|&p| frame.local(p)));
+        let lies = (facets.lies_of(from, facet), facets.lies(to.facet, facet));
+        let cuts = !matches!(lies, (Lies::Front, Lies::Behind) | (Lies::Behind, Lies::Front));
+        self.add_face(frame, &elements.frames[facet as usize], facet, cuts);
+        let count = ring.len() as u32;
+        let edge = |k: u32| Edge {
+            ends: [corners + k, corners + if k + 1 == count { 0 } else { k + 1 }],
+            left: 0,
+            right: NEVER,
+            side: facets.side(facet, k),
+        };
+        self.edges.extend((0..count).map(edge));
+        let (faces, edges) = (faces..self.faces.len() as u32, edges..self.edges.len() as u32);
+        self.all.push(Screen { faces, edges, is_flat: true });
+    }
+
+    fn add_body(&mut self, body: &Body, facets: &Facets, elements: &Elements, [from, to]: [&Element; 2]) {
+        let frame = &elements.frames[to.facet as usize];
+        let [faces, edges] = [self.faces.len() as u32, self.edges.len() as u32];
+        let first = self.corners.len() as u32;
+        let mut numbers = [(NEVER, Lies::Behind); super::bodies::MOST_FACETS];
+        for (number, &facet) in numbers.iter_mut().zip(&body.facets) {
+            let own = facets.lies_of(from, facet);
+            if matches!(own, Lies::Behind | Lies::On) {
+                continue;
+            }
+            let its = facets.lies(to.facet, facet);
+            // All of the body is on the other side.
+            if own == Lies::Front && matches!(its, Lies::Front | Lies::On) {
+                self.faces.truncate(faces as usize);
+                return;
+            }
+            *number = (self.faces.len() as u32 - faces, own);
+            self.add_face(frame, &elements.frames[facet as usize], facet, its != Lies::Behind);
+        }
+        self.corners.extend(body.corners.iter().map(|&p| frame.local(p)));
+        for edge in &body.edges {
+            let (left, left_lies) = numbers[edge.left as usize];
+            let (right, right_lies) = edge.right.map_or((NEVER, Lies::Behind), |right| numbers[right as usize]);
+            let is_within = left_lies == Lies::Front && right_lies == Lies::Front;
+            if (left, right) != (NEVER, NEVER) && !is_within {
+                self.edges.push(Edge { ends: edge.ends.map(|end| first + end), left, right, side: edge.side });
+            }
+        }
+        let (faces, edges) = (faces..self.faces.len() as u32, edges..self.edges.len() as u32);
+        self.all.push(Screen { faces, edges, is_flat: false });
+    }
+
+    fn add_face(&mut self, frame: &Frame, plane: &Frame, facet: u32, cuts: bool) {
+        let (normal, offset) = (frame.turned(plane.normal), plane.height(frame.origin));
+        self.faces.push(Face { normal, offset, cuts, facet });
+    }
+
+    /// Finds the half planes that a screen's shadow is in, seen from a point; false if one of them has all parts outside. That one is tried first the next time.
+    pub(super) fn shadow(
+        &mut self,
+        number: u32,
+        at: DVec3,
+        tried: &mut u32,
+        parts: &[Vec<DVec2>],
+        lines: &mut Vec<(HalfPlane, FacetSide)>,
+    ) -> bool {
+        let Self { all, faces, edges, corners, heights } = self;
+        let screen = &all[number as usize];
+        let faces = &faces[screen.faces.start as usize..screen.faces.end as usize];
+        let edges = &edges[screen.edges.start as usize..screen.edges.end as usize];
+        heights.clear();
+        heights.extend(faces.iter().map(|face| face.normal.dot(at) + face.offset));
+        let heights = &heights[..];
+        // From a point in its plane it hides nothing.
+        if screen.is_flat && heights[0].abs() <= 0.0 {
+            return false;
+        }
+        let is_in_front = |face: u32| heights.get(face as usize).is_some_and(|&height| height > 0.0);
+        let plane = |k: usize| {
+            let face = &faces[k];
+            let sign = if heights[k] > 0.0 { -1.0 } else { 1.0 };
+            let is_seen = face.cuts && (screen.is_flat || heights[k] > 0.0);
+            is_seen.then(|| HalfPlane { along: sign * face.normal.truncate(), offset: sign * face.offset })
+        };
+        let outline = |edge: &Edge| {
+            let left = is_in_front(edge.left);
+            if !screen.is_flat && left == is_in_front(edge.right) {
+                return None;
+            }
+            let [a, b] = edge.ends.map(|end| corners[end as usize] - at);
+            let inside = if left { b.cross(a) } else { a.cross(b) };
+            Some(HalfPlane { along: inside.truncate(), offset: -inside.dot(at) })
+        };
+        let is_outside = |line: &HalfPlane| parts.iter().all(|part| part.iter().all(|&p| line.height(p) <= 0.0));
+        let last = *tried as usize;
+        let last = if last < faces.len() { plane(last) } else { outline(&edges[last - faces.len()]) };
+        if last.is_some_and(|line| is_outside(&line)) {
+            return false;
+        }
+        lines.clear();
+        let planes = (0..faces.len()).map(|k| (plane(k), (faces[k].facet, 0)));
+        let sides = edges.iter().map(|edge| (outline(edge), edge.side));
+        for (place, (line, side)) in planes.chain(sides).enumerate() {
+            let Some(line) = line else { continue };
+            if is_outside(&line) {
+                *tried = place as u32;
+                return false;
+            }
+            lines.push((line, side));
+        }
+        screen.is_flat || heights.iter().any(|&height| height > 0.0)
+    }
+}
+
+/// True if no line of sight from an element meets the inside of a body before its outside: it is outside of the body, and not in front of what that lacks.
+fn is_seen_from_outside(body: &Body, facets: &Facets, from: &Element) -> bool {
+    body.lacks.is_none_or(|face| matches!(Lies::of(&from.ring, face), Lies::Behind | Lies::On))
+        && body.facets.iter().any(|&facet| facets.lies_of(from, facet) == Lies::Front)
+}
