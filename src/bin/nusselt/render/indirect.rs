@@ -22,7 +22,8 @@ pub(super) struct Interreflection {
     /// corners of a mesh; slower. Hemicubes and rays always do
     #[arg(long)]
     gather: bool,
-    /// Mesh polygons, those of one plane and material together, into patches with edges of at most this length, in scene units [default: an eighth of the scene's diagonal]
+    /// Mesh polygons, those of one plane and material together, into patches with edges of at most this length, in scene
+    /// units [default: a 12th of the scene's diagonal]
     #[arg(long, value_name = "SIZE", value_parser = parse_size, allow_hyphen_values = true)]
     patch: Option<f64>,
     /// Stop when so much of the emitted power is left to be sent
@@ -50,7 +51,7 @@ pub(super) struct Solved {
 }
 
 /// Edges of patches are at most this part of the scene's diagonal.
-const PART: f64 = 1.0 / 8.0;
+const PART: f64 = 1.0 / 12.0;
 
 impl Interreflection {
     /// Adds it to a shader, if it is wanted and something emits.
