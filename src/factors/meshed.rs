@@ -3,7 +3,7 @@
 use super::{ExchangeError, PatchMesh};
 use crate::scene::{PolygonId, Scene};
 
-/// Meshes every polygon of a scene into parts with edges of at most a given length, as [`PatchPlan::Mesh`] does, and makes a
+/// Meshes every polygon of a scene into parts with edges of at most a given length, as [`PatchPlan::Mesh`](super::PatchPlan::Mesh) does, and makes a
 /// scene of them: its polygon k is patch k of an exchange with that plan, with the object and the material of the polygon that it is part of, which is told too.
 /// Edges that polygons share are divided in the same places.
 ///
