@@ -265,6 +265,11 @@ fn the_summary_tells_closure_reciprocity_estimates_and_times() {
     let certificate = &summary["certificate"];
     assert_eq!((&certificate["valid"], &certificate["polygons"]), (&json!(true), &json!([0, 1, 2, 3, 4, 5])));
     assert!(number(&certificate["exact_decisions"]) > 0.0);
+    // Of 16 rows, 16 of their 20 factors; by points, so that other numbers are found.
+    let pairs = &certificate["pairs"];
+    assert_eq!((&pairs["checked"], &pairs["not_checked"]), (&json!(256), &json!(0)));
+    assert_eq!(pairs["pairs_above_tolerance"], json!(0));
+    assert!((0.0..1e-4).contains(&number(&pairs["largest_relative"])) && number(&pairs["largest_relative"]) > 0.0);
     let timing = &summary["timing"];
     assert_eq!(timing["views"], json!(24), "a row each");
     for key in ["load_s", "bsp_s", "view_ms_mean", "view_ms_max", "rows_s", "certify_ms"] {
@@ -273,8 +278,10 @@ fn the_summary_tells_closure_reciprocity_estimates_and_times() {
     let part = folder.summary("form-factors cube.obj --rows 2..4 --two-sided --certify=rational");
     assert_eq!((&part["rows"], &part["rows_computed"], &part["factors"]), (&json!([2, 4]), &json!(2), &json!(10)));
     assert_eq!((&part["reciprocity"], &part["certificate"]["polygons"]), (&Value::Null, &json!([2, 3])));
+    assert_eq!(part["certificate"]["pairs"], Value::Null, "with backs nothing is reciprocal");
     let told = folder.run("form-factors cube.obj --certify -o m.csv");
     assert!(told.contains("proof        holds for all directions of 6 views; kernel arithmetic"), "{told}");
+    assert!(told.contains("pairs        30 once more from their other patch, within "), "{told}");
     assert!(told.contains("rows         0..6, 6 computed") && told.contains("above 0.0001 in 0 rows"), "{told}");
 }
 

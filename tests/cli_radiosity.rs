@@ -28,7 +28,23 @@ fn the_cornell_box_is_solved_into_files_of_all_kinds() {
     assert!(count("a.ply") >= 2 * patches.len() as u64);
     let page = folder.read("a.html");
     assert!(page.starts_with("<!DOCTYPE html>") && !page.contains("{{") && page.trim_end().ends_with("</html>"));
-    shows_itself(&folder, "a.html");
+    // z is up unless one says otherwise, and a key makes it -x, which comes next.
+    let raised = |page: &str, axis: usize| {
+        let Some(above) = shows_itself(&folder, page) else { return };
+        // The eye is raised by 0.45 rad.
+        assert!((above[axis].abs() - 0.45_f64.cos()).abs() < 1e-3, "{page}: {above:?}");
+        assert!(above[axis] > 0.0 || page == "key.html", "{page}: {above:?}");
+    };
+    raised("a.html", 2);
+    folder.run(&format!("{line} --up 0,2,0 -o up.html"), 0);
+    raised("up.html", 1);
+    let key = "<script>dispatchEvent(new KeyboardEvent('keydown', { key: 'u' }))</script></html>";
+    folder.write("key.html", page.replace("</html>", key));
+    raised("key.html", 0);
+    // Files of glTF say that y is up.
+    folder.write("lamp.gltf", LAMP);
+    folder.run("radiosity lamp.gltf -o lamp.html", 0);
+    raised("lamp.html", 1);
     // Two threads or one, and the same files.
     folder.run(&format!("{line} --threads 1 -o b.ply"), 0);
     assert_eq!(
@@ -37,14 +53,19 @@ fn the_cornell_box_is_solved_into_files_of_all_kinds() {
     );
 }
 
-/// Opens a page in Chromium, if that is there.
-fn shows_itself(folder: &Folder, page: &str) {
+const LAMP: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0},"material":0}]}],"materials":[{"emissiveFactor":[1,1,1]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],
+    "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
+
+/// Opens a page in Chromium, if that is there; gives the direction that points up on the screen.
+fn shows_itself(folder: &Folder, page: &str) -> Option<[f64; 3]> {
     let Some(browser) = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]
         .into_iter()
         .find(|path| Path::new(path).exists())
     else {
         eprintln!("SKIPPED: there is no Chromium to show {page} with; install it to have the page tested");
-        return;
+        return None;
     };
     let profile = folder.path("profile");
     let output = Command::new(browser)
@@ -56,8 +77,13 @@ fn shows_itself(folder: &Folder, page: &str) {
         .output()
         .expect("the browser runs");
     let shown = String::from_utf8_lossy(&output.stdout);
-    let state = shown.split("data-state=\"").nth(1).and_then(|rest| rest.split('"').next());
-    assert_eq!(state, Some("drawn"), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = |name: &str| {
+        let rest = shown.split(&format!("data-{name}=\"")).nth(1)?;
+        rest.split('"').next()
+    };
+    assert_eq!(said("state"), Some("drawn"), "{}", String::from_utf8_lossy(&output.stderr));
+    let above: Vec<f64> = said("above")?.split(',').map(|x| x.parse().expect("a number")).collect();
+    Some(above.try_into().expect("three numbers"))
 }
 
 #[test]

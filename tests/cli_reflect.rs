@@ -261,13 +261,16 @@ fn specifications_that_make_no_sense_are_refused_with_what_is_expected() {
     assert!(folder.refused("reflect lamp.obj --eye 0,0,1 --on 7 --view 0,0,1 --brdf lambert:1", 2).contains("--on"));
     assert_eq!(folder.files(), 2);
     // The work fails: what the file says is wrong.
-    folder.write("lamp.mtl", &MATERIALS.replace("Kd 0.5", "Kd 1.5"));
+    folder.write("lamp.mtl", &MATERIALS.replace("Ns 20", "Ns 2e6"));
     let line = "reflect lamp.obj --eye 0,0,0 --normal 0,0,1 --view 0,0,1 --brdf material";
     let message = folder.refused(line, 1);
-    assert!(message.contains("lamp.obj: material \"lacquer\": a reflectance"), "{message}");
-    folder.write("lamp.mtl", &MATERIALS.replace("Kd 0.5", "Kd 0.9"));
-    let [_, warning] = folder.output(line, 0);
-    assert!(warning.contains("Kd and Ks sum to more than 1"), "{warning}");
+    assert!(message.contains("lamp.mtl:4: material \"lacquer\": an exponent"), "{message}");
+    // So much is made less, with a warning.
+    for bright in ["Kd 0.9", "Kd 1.5"] {
+        folder.write("lamp.mtl", &MATERIALS.replace("Kd 0.5", bright));
+        let [_, warning] = folder.output(line, 0);
+        assert!(warning.contains("lamp.mtl:4: material \"lacquer\": Kd and Ks sum to more than 1"), "{warning}");
+    }
     assert!(
         folder
             .refused("reflect none.obj --eye 0,0,0 --normal 0,0,1 --view 0,0,1 --brdf mirror", 1)

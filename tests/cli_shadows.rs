@@ -52,6 +52,18 @@ fn groups_of_the_file_have_the_areas_of_the_summary() {
 }
 
 #[test]
+fn polygons_without_area_are_neither_lit_nor_dark() {
+    let folder = Folder::new("shadows-flat");
+    let vertices = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 2 0 0\n";
+    folder.write("flat.obj", format!("{vertices}f 1 2 3 4\nf 1 2 5\n"));
+    let text = folder.run("shadows flat.obj --light 2,2,3", 0);
+    assert!(text.contains("2, of them 1 lit, 0 in part, 1 without area"), "{text}");
+    folder.write("whole.obj", format!("{vertices}f 1 2 3 4\n"));
+    let text = folder.run("shadows whole.obj --light 2,2,3", 0);
+    assert!(text.contains("1, of them 1 lit, 0 in part\n"), "{text}");
+}
+
+#[test]
 fn what_is_wrong_is_said_in_one_line() {
     let folder = Folder::new("shadows-wrong");
     for (line, code, what) in [

@@ -6,7 +6,7 @@ use nusselt::contour::{Domain, Frustum, SceneOrder, Viewpoint};
 use nusselt::factors::{Exchange, ExchangeOptions, PatchMesh, mesh_scene};
 use nusselt::picture::PixelParts;
 use nusselt::radiosity::SurfaceOptions;
-use nusselt::render::{Indirect, RenderError, Rendered, Shader, ShaderOptions, Shading, Spot, render};
+use nusselt::render::{Indirect, RenderError, Rendered, Shader, ShaderOptions, Shading, Spot, render, render_bands};
 use nusselt::samples::{Kind, generate};
 use nusselt::scene::{Material, PieceId, PolygonId, PolygonRef, Scene, Side};
 use std::f64::consts::PI;
@@ -288,6 +288,172 @@ fn a_mirror_shows_what_is_there() {
     // Of five rays three meet the lid, which glows.
     let found = shader.reflected(&floor_spot(0.0, 0.0), DVec3::Z, 0).expect("shaded");
     assert_eq!(found, DVec3::splat(3.0));
+}
+
+/// Each part was followed apart: from mirror to mirror, twice as many rays.
+#[test]
+fn mirrors_of_several_parts_do_not_branch() {
+    let face = vec![vec![0, 1, 2, 3]];
+    let scene = Scene::builder()
+        .mesh(&square([-5.0, -5.0], [5.0, 5.0], 0.0), &face, material("mirror", 0.0, 0.0))
+        .mesh(&square([-5.0, -5.0], [5.0, 5.0], 1.0), &[vec![3, 2, 1, 0]], material("mirror", 0.0, 1.0))
+        .build()
+        .expect("a scene");
+    let parts = [0.25, 0.375];
+    let brdfs = scene.materials().iter().map(|_| -> Box<dyn Brdf> {
+        let part = |at_normal: f64| -> Box<dyn Brdf> {
+            Box::new(Mirror::new(Fresnel::schlick(DVec3::splat(at_normal)).expect("a reflectance")))
+        };
+        Box::new(Sum::new(parts.map(part).into()))
+    });
+    let options = ShaderOptions { mirrors: 64, ..ShaderOptions::default() };
+    let shader = Shader::with_brdfs(SceneOrder::new(&scene), brdfs.collect(), Lighting::default(), options);
+    let found = shader.expect("a shader").reflected(&floor_spot(0.0, 0.0), DVec3::Z, 0).expect("shaded");
+    // Every other ray meets the lid, which emits 1.
+    let reflectance: f64 = parts.iter().sum();
+    let expected: f64 = (0..64).step_by(2).map(|k| reflectance.powi(k + 1)).sum();
+    assert!((found - expected).abs().max_element() < 1e-14, "{found} {expected}");
+}
+
+#[test]
+fn a_light_on_a_surface_lights_all_of_it_but_its_own_point() {
+    let scene = half_hidden();
+    let eye = DVec3::new(-3.5, 0.5, 1.0);
+    let camera = Frustum::new(DVec3::new(2.0, 0.0, -1.0), DVec3::Z, 60.0, 1.0).expect("a camera");
+    let plain = shader(&scene, Shading::Contour);
+    let at = |spot: &Spot, shader: &Shader| shader.reflected(spot, DVec3::new(-1.0, 0.3, 2.0), 0).expect("shaded");
+    // On the floor, at a corner of it, on the lamp, in its plane beside it, on an edge of the plate, and a hair above the floor.
+    for place in
+        [[0.5, 0.25, 0.0], [4.0, 4.0, 0.0], [0.0, 0.0, 3.0], [2.0, 0.0, 3.0], [0.0, 0.0, 1.5], [0.5, 0.25, 1e-200]]
+    {
+        let position = DVec3::from(place);
+        let light = Light::Point { position, intensity: DVec3::ONE };
+        let lighting = Lighting { lights: vec![light], ..Lighting::default() };
+        let lit = Shader::new(SceneOrder::new(&scene), lighting, ShaderOptions::default()).expect("a shader");
+        let below = floor_spot(position.x, position.y);
+        if position.z < 1e-9 {
+            // Where it is itself it is left out.
+            assert_eq!(at(&below, &lit), at(&below, &plain), "{place:?}");
+        }
+        let rendered = render(&lit, eye, &camera, UVec2::new(12, 12), &|_| ()).expect("a picture");
+        assert!(rendered.picture.pixels().iter().all(|pixel| pixel.is_finite()), "{place:?}");
+    }
+    let nowhere = Light::Point { position: DVec3::NAN, intensity: DVec3::ONE };
+    let dark = Light::Directional { towards: DVec3::Z, irradiance: DVec3::NEG_ONE };
+    for light in [nowhere, dark] {
+        let lighting = Lighting { lights: vec![light], ..Lighting::default() };
+        let refused = Shader::new(SceneOrder::new(&scene), lighting, ShaderOptions::default()).err();
+        assert!(matches!(refused, Some(RenderError::Light(_))), "{refused:?}");
+    }
+}
+
+#[test]
+fn a_lamp_in_line_with_a_point_lights_nothing_there() {
+    // One that stands on the floor, and one in the floor's own plane.
+    let upright = [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 1.0], [0.0, -1.0, 1.0]];
+    let face = vec![vec![0, 1, 2, 3]];
+    let scene = Scene::builder()
+        .mesh(&square([-4.0, -4.0], [4.0, 4.0], 0.0), &face, material("floor", RHO, 0.0))
+        .mesh(&upright, &face, material("lamp", 0.0, GLOW))
+        .mesh(&square([4.0, -1.0], [6.0, 1.0], 0.0), &face, material("lamp", 0.0, GLOW))
+        .build()
+        .expect("a scene");
+    for options in [Shading::Contour, Shading::Hemicube { resolution: 16 }] {
+        let shader = shader(&scene, options);
+        let at = |x: f64, y: f64| shader.reflected(&floor_spot(x, y), DVec3::Z, 0).expect("shaded").x;
+        // In its plane beside it, at its corners, on its lower edge, behind it, and beside the other one; then before it.
+        for [x, y] in [[0.0, 2.0], [0.0, 1.0], [0.0, -1.0], [0.0, 0.3], [-1.0, 0.2], [4.0, 0.0], [4.0, 1.0]] {
+            let found = at(x, y);
+            // On its edge or corner what is seen of it depends on how the point is rounded.
+            let is_on_it = x == 0.0 && y.abs() <= 1.0;
+            let is_lit = x > 0.0;
+            assert!(found.is_finite() && (is_on_it || (found > 0.0) == is_lit), "{options:?} {x} {y}: {found}");
+        }
+        let camera = Frustum::new(DVec3::new(0.0, 1.0, -1.0), DVec3::Z, 60.0, 1.0).expect("a camera");
+        let rendered = render(&shader, DVec3::new(0.0, -3.0, 1.5), &camera, UVec2::new(9, 9), &|_| ());
+        assert!(rendered.expect("a picture").picture.pixels().iter().all(|pixel| pixel.is_finite()));
+    }
+}
+
+/// Below a hood that is open at its bottom, on whole patches of the floor.
+#[test]
+fn what_is_seen_inside_of_a_hood_has_no_light_from_outside() {
+    let corner = |k: usize| [0, 1, 2].map(|axis| [[-1.0, -1.0, 0.0][axis], [1.0, 1.0, 1.0][axis]][k >> axis & 1]);
+    let hood: Vec<[f64; 3]> = (0..8).map(corner).collect();
+    let sides = [[0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5], [4, 5, 7, 6]];
+    let scene = Scene::builder()
+        .mesh(&square([-4.0, -4.0], [4.0, 4.0], 0.0), &[vec![0, 1, 2, 3]], material("floor", RHO, 0.0))
+        .mesh(&hood, &sides.map(|side| side.to_vec()), material("hood", RHO, 0.0))
+        .mesh(&square([-4.0, -4.0], [4.0, 4.0], 5.0), &[vec![3, 2, 1, 0]], material("ceiling", RHO, 0.0))
+        .build()
+        .expect("a scene");
+    let mesh = PatchMesh::new(&scene, 1.0).expect("a mesh");
+    let (patches, of, count) = (mesh.patches().expect("a scene"), mesh.polygons(), mesh.len());
+    let exchange = Exchange::of_mesh(&mesh, ExchangeOptions::default()).expect("patches");
+    let radiosity = vec![DVec3::ONE; count];
+    let indirect = Indirect::new(&patches, &of, scene.polygon_count(), &vec![DVec3::ZERO; count], &radiosity);
+    let options = SurfaceOptions::default();
+    let indirect = indirect.interpolated(&exchange, &mesh.regions(), &options).expect("a surface");
+    let shader = shader(&scene, Shading::Contour).with_indirect(indirect).expect("its patches");
+    let at = |x: f64, y: f64| shader.reflected(&floor_spot(x, y), DVec3::Z, 0).expect("shaded").x;
+    for k in 0..400 {
+        let [x, y] = [k % 20, k / 20].map(|k| -0.99 + 1.98 * f64::from(k) / 19.0);
+        assert!(at(x, y) == 0.0, "{x} {y}: {}", at(x, y));
+        // Outside of it there is light everywhere.
+        assert!(at(2.0 + x, y) > 0.05 && at(2.0 * x, 2.0 + y) > 0.05, "{x} {y}");
+    }
+}
+
+#[test]
+fn a_picture_by_bands_is_the_same() {
+    let scene = half_hidden();
+    let shader = shader(&scene, Shading::Contour);
+    let (eye, size) = (DVec3::new(-3.5, 0.5, 1.0), UVec2::new(8200, 37));
+    let camera = Frustum::new(DVec3::new(2.0, 0.0, 1.0), DVec3::Z, 1.0, 8200.0 / 37.0).expect("a camera");
+    let whole = render(&shader, eye, &camera, size, &|_| ()).expect("a picture");
+    let (mut pixels, mut bands) = (Vec::new(), 0);
+    let points = render_bands(&shader, eye, &camera, size, &|_| (), |band| {
+        assert_eq!(band.radiances.len() % 8200, 0);
+        pixels.extend(band.radiances);
+        bands += 1;
+        Ok::<(), RenderError>(())
+    });
+    assert_eq!((points.ok(), &pixels[..]), (Some(whole.points), whole.picture.pixels()));
+    // Of 513 squares side by side, one row of squares at a time.
+    assert_eq!(bands, 3);
+    assert!(whole.points > 8200 && pixels.iter().any(|&pixel| pixel != pixels[0]));
+    let stopped = render_bands(&shader, eye, &camera, size, &|_| (), |_| Err(RenderError::TooBright { x: 7, y: 7 }));
+    assert_eq!(stopped, Err(RenderError::TooBright { x: 7, y: 7 }));
+}
+
+#[test]
+fn lights_that_are_very_bright_or_very_dim_are_exposed_like_others() {
+    let picture = |glow: f64| {
+        let lamp = material("lamp", 0.0, glow);
+        let scene = Scene::builder()
+            .mesh(&square([-4.0, -4.0], [4.0, 4.0], 0.0), &[vec![0, 1, 2, 3]], material("floor", RHO, 0.0))
+            .mesh(&square([-1.0, -1.0], [1.0, 1.0], 3.0), &[vec![3, 2, 1, 0]], lamp)
+            .build()
+            .expect("a scene");
+        let camera = Frustum::new(DVec3::new(2.0, 0.0, -1.0), DVec3::Z, 60.0, 1.0).expect("a camera");
+        render(&shader(&scene, Shading::Contour), DVec3::new(-3.5, 0.5, 1.0), &camera, UVec2::new(9, 9), &|_| ())
+    };
+    let exposed = |glow: f64| {
+        let rendered = picture(glow).expect("a picture");
+        let exposure = rendered.auto_exposure();
+        assert!(exposure.is_finite() && exposure > 0.0, "{glow}: {exposure}");
+        rendered.picture.pixels().iter().map(|&pixel| pixel * exposure).collect::<Vec<_>>()
+    };
+    let usual = exposed(1.0);
+    // Sums of a few products are rounded a few times.
+    for glow in [1e300, 1e-290] {
+        for (found, expected) in exposed(glow).iter().zip(&usual) {
+            assert!((*found - *expected).abs().max_element() < 1e-13, "{glow}: {found} {expected}");
+        }
+    }
+    // Its radiances are subnormal, or no numbers.
+    assert!(exposed(1e-320).iter().all(|pixel| pixel.is_finite()));
+    assert!(matches!(picture(f64::MAX), Ok(_) | Err(RenderError::TooBright { .. })));
 }
 
 #[test]

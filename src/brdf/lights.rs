@@ -100,7 +100,19 @@ impl Light {
         })
     }
 
-    /// What a surface at `eye` reflects of it if nothing is in the way.
+    /// Refuses places, directions and strengths that are none.
+    pub(crate) fn check(&self) -> Result<(), ReflectError> {
+        let (place, strength) = match *self {
+            Self::Point { position, intensity } => (Some(position), intensity),
+            Self::Directional { towards, irradiance } => {
+                ((towards / towards.abs().max_element()).try_normalize(), irradiance)
+            }
+        };
+        let is_fit = place.is_some_and(DVec3::is_finite) && strength.is_finite() && strength.min_element() >= 0.0;
+        if is_fit { Ok(()) } else { Err(ReflectError::BadLight(*self)) }
+    }
+
+    /// What a surface at `eye` reflects of it if nothing is in the way. A point light that is there itself, or so near that its irradiance is more than numbers hold, is not fit for it.
     pub(crate) fn unhidden(&self, eye: DVec3, brdf: &dyn Brdf, place: &Place) -> Result<DVec3, ReflectError> {
         let (towards, irradiance) = match *self {
             Self::Point { position, intensity } => {

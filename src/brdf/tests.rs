@@ -287,6 +287,10 @@ fn materials_reflect_as_their_files_say() {
     let by_sum = DVec3::new(1.0, 1.5, 1.0);
     let [matt, gloss] = [bright.diffuse, bright.specular].map(|colour| DVec3::from(colour) / by_sum);
     assert!((of(&bright) - expected(matt, gloss)).length() < 1e-15 && bright.reflects_too_much());
+    // One alone that is too much, and what is so much that it overflows.
+    let white = Material { diffuse: [1.2, 0.4, f64::MAX], specular: [0.0, 0.0, f64::MAX], ..paint.clone() };
+    assert_eq!(white.reflectances(), Ok([DVec3::new(1.0, 0.4, 0.5), DVec3::new(0.0, 0.0, 0.5)]));
+    assert!(white.reflects_too_much() && white.brdf().is_ok());
     // By the equations of glTF's appendix B.3.5, written out, with the height-correlated masking of B.3.6.1.
     let (base_colour, metallic, roughness) = ([0.9, 0.5, 0.1], 0.3, 0.6_f64);
     let gltf = scene::MetallicRoughness { base_colour, metallic, roughness };
@@ -302,8 +306,8 @@ fn materials_reflect_as_their_files_say() {
     let expected = (1.0 - fresnel) * matt + fresnel * distribution * visible;
     assert!((of(&gltf) - expected).length() < 1e-14 * expected.length(), "{} {expected}", of(&gltf));
     for bad in [
-        Material { diffuse: [1.1, 0.0, 0.0], ..paint.clone() },
-        Material { specular: [0.0, 2.0, 0.0], ..paint.clone() },
+        Material { diffuse: [-0.1, 0.0, 0.0], ..paint.clone() },
+        Material { specular: [0.0, f64::NAN, 0.0], ..paint.clone() },
         Material { exponent: 1e7, ..paint.clone() },
         Material {
             metallic_roughness: Some(scene::MetallicRoughness { base_colour, metallic: 1.5, roughness }),

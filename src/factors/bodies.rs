@@ -53,7 +53,9 @@ impl Bodies {
                 continue;
             }
             let group = around.group(first, &is_done, &lies);
-            group.iter().for_each(|&facet| is_done[facet as usize] = true);
+            for &facet in &group {
+                is_done[facet as usize] = true;
+            }
             if let Some(body) = around.body(group) {
                 let number = found.all.len() as u32;
                 body.facets.iter().for_each(|&facet| found.of_facet[facet as usize] = Some(number));

@@ -1,7 +1,7 @@
 //! Cutting the cells of a mesh along segments, such that it stays free of T-junctions: where a segment meets the side of a cell, all cells that have that side get a corner
 //! there, whichever facet they are in.
 
-use super::shape::{Frame, area, sides, turn};
+use super::shape::{Frame, double_area, sides, turn};
 use glam::{DVec2, DVec3};
 use rustc_hash::FxHashMap;
 use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
@@ -349,9 +349,10 @@ impl<'a> Net<'a> {
         // Between nodes of one side rounding may leave triangles outside of it.
         let longest =
             |face: &[usize]| sides(face).map(|[a, b]| self.flat[a].distance(self.flat[b])).fold(0.0, f64::max);
-        let faces: Vec<Vec<usize>> = all.filter(|face| area(&points(face)) > 1e-9 * longest(face).powi(2)).collect();
-        let sum: f64 = faces.iter().map(|face| area(&points(face))).sum();
-        let whole = area(&points(ring));
+        let faces: Vec<Vec<usize>> =
+            all.filter(|face| double_area(&points(face)).length() > 2e-9 * longest(face).powi(2)).collect();
+        let sum: f64 = faces.iter().map(|face| double_area(&points(face)).length()).sum();
+        let whole = double_area(&points(ring)).length();
         ((sum - whole).abs() <= 1e-9 * whole).then_some(faces)
     }
 }

@@ -4,13 +4,16 @@ use super::facets::Facets;
 use super::patch_mesh::PatchMesh;
 use super::placement::Placement;
 use super::row::{PatchInfo, PatchShape};
-use super::shape::{Frame, area, centre, sides, turn};
+use super::shape::{Frame, centre, double_area, sides, turn};
 use super::{ExchangeError, PatchPlan};
 use crate::scene::{PieceRef, PolygonId, Scene};
 use glam::{DVec2, DVec3};
 
 /// The normals of a patch whose mean is shorter than this have no direction together.
 const CLOSED: f64 = 1e-9;
+
+/// Parts of a scene of about 1 across are not smaller: products of two areas are numbers.
+const LEAST_AREA: f64 = 1e-140;
 
 /// A flat convex part of a patch.
 pub(super) struct Element {
@@ -57,9 +60,9 @@ impl Elements {
             let known = of_object[polygon.object().index()].filter(|_| plan == PatchPlan::Objects);
             let patch = known.map_or_else(|| found.patch(name.to_owned(), polygon.id()), Ok)?;
             of_object[polygon.object().index()] = Some(patch);
-            polygon.pieces().for_each(|piece| {
-                found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement));
-            });
+            for piece in polygon.pieces() {
+                found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement))?;
+            }
         }
         Ok(found)
     }
@@ -70,7 +73,7 @@ impl Elements {
         for part in &mesh.parts {
             let name = mesh.scene().polygon(part.polygon).object_name();
             let patch = found.patch(name.to_owned(), part.polygon)?;
-            found.add(patch, facets.of_piece[part.piece.index()], part.ring.clone());
+            found.add(patch, facets.of_piece[part.piece.index()], part.ring.clone())?;
         }
         Ok(found)
     }
@@ -110,12 +113,16 @@ impl Elements {
         (area > 0.0).then_some(PatchShape { center, normal, pieces })
     }
 
-    fn add(&mut self, patch: u32, facet: u32, ring: Vec<DVec3>) {
+    fn add(&mut self, patch: u32, facet: u32, ring: Vec<DVec3>) -> Result<(), ExchangeError> {
         let frame = &self.frames[facet as usize];
         let flat: Vec<DVec2> = ring.iter().map(|&p| frame.flat(p)).collect();
-        let area = area(&ring);
-        if area == 0.0 {
-            return;
+        let twice_area = double_area(&ring);
+        let area = 0.5 * twice_area.length();
+        if twice_area == DVec3::ZERO {
+            return Ok(());
+        }
+        if area < LEAST_AREA {
+            return Err(ExchangeError::TooSmall { polygon: self.patches[patch as usize].polygon });
         }
         let centre = centre(&ring);
         let element = Element {
@@ -136,6 +143,7 @@ impl Elements {
         self.of_patch[patch as usize].push(number);
         self.of_facet[facet as usize].push(number);
         self.patches[patch as usize].area += area;
+        Ok(())
     }
 }
 

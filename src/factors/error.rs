@@ -25,6 +25,15 @@ pub enum ExchangeError {
         /// The polygon.
         polygon: PolygonId,
     },
+    /// A patch is too small for the scene that it is in.
+    #[error(
+        "polygon {polygon}, or a part of it, has less than 1e-140 of the area that the scene has across, beyond the range of numbers; remove it, or compute the parts of the \
+         scene by themselves"
+    )]
+    TooSmall {
+        /// The polygon.
+        polygon: PolygonId,
+    },
     /// There are more patches than can be numbered.
     #[error("there are more than 4 billion patches; take a longer edge")]
     TooManyPatches,

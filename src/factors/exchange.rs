@@ -3,9 +3,10 @@
 use super::blockers::Blockers;
 use super::closure::{TooLarge, place};
 use super::element::{Element, Elements};
-use super::element_row::{Effort, ElementRows, RowSpace};
+use super::element_row::{Effort, ElementRows, explained};
 use super::facets::Facets;
 use super::row::{Entry, PatchInfo, Row, Share};
+use super::row_space::RowSpace;
 use super::seen::{Columns, Looker};
 use super::shared::{self, Shared};
 use super::tree::ElementTree;
@@ -13,13 +14,11 @@ use super::{ExchangeError, ExchangeOptions, PatchMesh, PatchPlan};
 use crate::parallel;
 use crate::scene::Scene;
 use std::ops::Range;
-use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
-/// Rows that are in memory at the same time.
-const CHUNK: usize = 256;
-/// How a row is computed, and how anew as long as its residue is larger than the estimates of its errors: to these parts of the tolerance, and with or without
-/// many views from near its sides.
+/// How a row is computed, and how anew as long as its residue is larger than what is allowed and the estimates of its errors: to these parts of the tolerance,
+/// and with or without many views from near its sides.
 const ATTEMPTS: [(f64, bool); 3] = [(1.0, false), (1.0, true), (0.1, true)];
 
 /// Form factors between the patches of a scene.
@@ -105,49 +104,72 @@ impl Exchange {
         self.row_in(patch, &Shared::default(), &mut RowSpace::new(&self.elements))
     }
 
-    /// Rows in their order, computed by the threads of the current `rayon` pool with the feature `parallel`, and handed over one by one: a few hundred
-    /// are in memory at a time. They do not depend on the number of threads.
+    /// Rows in their order, computed by the threads of the current `rayon` pool with the feature `parallel`, and handed over one by one, each as soon as
+    /// all before it are there: a few hundred are in memory at a time. They do not depend on the number of threads. `take` is called by any of them.
     ///
     /// # Errors
-    /// The first one that `take` gives, or as [`Exchange::row`].
-    pub fn rows<E: From<ExchangeError>>(
+    /// The first one that `take` gives, or as [`Exchange::row`], after all rows before that one were handed over.
+    pub fn rows<E: From<ExchangeError> + Send>(
         &self,
         patches: Range<usize>,
-        mut take: impl FnMut(Row) -> Result<(), E>,
+        mut take: impl FnMut(Row) -> Result<(), E> + Send,
+    ) -> Result<(), E> {
+        self.timed_rows(patches, |row, _| take(row))
+    }
+
+    /// The same, with the time that a thread took for each row.
+    ///
+    /// # Errors
+    /// As [`Exchange::rows`].
+    pub fn timed_rows<E: From<ExchangeError> + Send>(
+        &self,
+        patches: Range<usize>,
+        mut take: impl FnMut(Row, Duration) -> Result<(), E> + Send,
     ) -> Result<(), E> {
         if patches.end > self.patches.len() {
             return Err(ExchangeError::UnknownPatch { patch: patches.end - 1, count: self.patches.len() }.into());
         }
         let spaces: Mutex<Vec<RowSpace>> = Mutex::new(Vec::new());
         let free = || spaces.lock().unwrap_or_else(PoisonError::into_inner);
-        let mut start = patches.start;
-        let mut shared = Shared::default();
-        while start < patches.end {
-            if (start - patches.start).is_multiple_of(shared::BLOCK) {
-                shared = Shared::of(&self.elements, start..patches.end.min(start + shared::BLOCK));
-            }
-            let chunk: Vec<usize> = (start..patches.end.min(start + CHUNK)).collect();
-            // All threads take the next row there is: few are not complete that others could learn from.
-            let next = AtomicUsize::new(start);
-            start += chunk.len();
-            let mut rows = parallel::map(chunk, |_| {
-                let patch = next.fetch_add(1, Ordering::Relaxed);
+        for start in patches.clone().step_by(shared::BLOCK) {
+            let block = start..patches.end.min(start + shared::BLOCK);
+            let shared = Shared::of(&self.elements, block.clone());
+            let compute = |patch: usize| {
+                let start = Instant::now();
                 let space = free().pop();
                 let mut space = space.unwrap_or_else(|| RowSpace::new(&self.elements));
                 let row = self.row_in(patch, &shared, &mut space);
                 free().push(space);
-                (patch, row)
-            });
-            rows.sort_unstable_by_key(|&(patch, _)| patch);
-            for (_, row) in rows {
-                take(row?)?;
-            }
+                Ok((row?, start.elapsed()))
+            };
+            parallel::in_order(block, compute, |(row, took)| take(row, took))?;
         }
         Ok(())
     }
 
+    /// `F[from][to]` once more, by points on the patch that it is from and to the tolerance: what rows have comes from closed forms, or from points on the smaller of the two, and
+    /// is the same number from both. `None` if there is no way but views: if either patch has several flat convex parts, lies on another one, or has too much in front of
+    /// it, and where backs count. The cost is that of an entry.
+    ///
+    /// # Errors
+    /// If there are no such patches.
+    pub fn by_points(&self, from: usize, to: usize) -> Result<Option<Share>, ExchangeError> {
+        let count = self.patches.len();
+        if let Some(patch) = [from, to].into_iter().find(|&patch| patch >= count) {
+            return Err(ExchangeError::UnknownPatch { patch, count });
+        }
+        let [&[number], &[other]] = [from, to].map(|patch| &self.elements.of_patch[patch][..]) else {
+            return Ok(None);
+        };
+        let effort = Effort { tolerance: self.options.tolerance, towards_sides: false, is_shared: false };
+        let alone = Shared::default();
+        let rows = self.element_rows(&alone);
+        Ok(rows.by_points(number, other, effort, &mut RowSpace::new(&self.elements)))
+    }
+
     pub(super) fn row_in(&self, patch: usize, shared: &Shared, space: &mut RowSpace) -> Result<Row, ExchangeError> {
         let mut failure = None;
+        let explained = explained(self.options.tolerance);
         for (part, towards_sides) in ATTEMPTS {
             // Other rows are told only once.
             let is_shared = failure.is_none();
@@ -156,7 +178,7 @@ impl Exchange {
             if row.closure_raw == 0.0 {
                 return Ok(row);
             }
-            match place(&mut row) {
+            match place(&mut row, explained) {
                 Ok(()) => {
                     row.entries.retain(|entry| entry.share.factor > 0.0);
                     return Ok(row);
@@ -168,6 +190,13 @@ impl Exchange {
         Err(ExchangeError::NotClosed { patch, residue, estimates })
     }
 
+    fn element_rows<'a>(&'a self, shared: &'a Shared) -> ElementRows<'a> {
+        let Self { facets, elements, trees, options, .. } = self;
+        let blockers = Blockers { facets, elements, trees };
+        let looker = Looker { facets, elements, trees, sides: options.sides };
+        ElementRows { blockers, shared, looker, most_views: options.most_views }
+    }
+
     /// The row before its residue is placed.
     fn raw_row(
         &self,
@@ -177,9 +206,7 @@ impl Exchange {
         space: &mut RowSpace,
     ) -> Result<Row, ExchangeError> {
         let elements = &self.elements;
-        let blockers = Blockers { facets: &self.facets, elements, trees: &self.trees };
-        let looker = Looker { facets: &self.facets, elements, trees: &self.trees, sides: self.options.sides };
-        let rows = ElementRows { blockers, shared, looker, most_views: self.options.most_views };
+        let rows = self.element_rows(shared);
         let area = elements.patches[patch].area;
         let mut shares: Vec<(u32, Share)> = Vec::new();
         for &element in &elements.of_patch[patch] {
@@ -195,7 +222,7 @@ impl Exchange {
         shares.sort_by_key(|&(column, _)| column);
         let columns = Columns { patches: elements.patches.len() as u32 };
         let (mut backs, mut background) = (Share::default(), Share::default());
-        let mut entries: Vec<Entry> = Vec::new();
+        let mut entries: Vec<Entry> = Vec::with_capacity(shares.len());
         for (column, share) in shares {
             let sum = if column == columns.backs() {
                 &mut backs

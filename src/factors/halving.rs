@@ -85,7 +85,7 @@ fn fan(ring: &[DVec3], middles: &[Option<DVec3>]) -> Vec<Vec<DVec3>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::shape::{area, centre};
+    use super::super::shape::{centre, double_area};
     use super::*;
 
     /// A grid of squares with one triangle pair, halved again and again around a place.
@@ -108,7 +108,7 @@ mod tests {
             let next: Vec<Vec<DVec3>> = rings.iter().flat_map(|ring| halving.parts(ring)).collect();
             assert!(next.len() > rings.len());
             rings = next;
-            let sum: f64 = rings.iter().map(|ring| area(ring)).sum();
+            let sum: f64 = rings.iter().map(|ring| 0.5 * double_area(ring).length()).sum();
             // Places are multiples of a power of two.
             assert!((sum - 25.0).abs() < 1e-12, "{sum}");
             let edges: FxHashSet<[Key; 2]> = rings.iter().flat_map(|ring| sides(ring)).map(edge).collect();

@@ -1,7 +1,7 @@
 //! The exchange between two elements that see each other partly: an integral over one of them, of the closed form of what is seen of the other.
 //!
 //! It is divided into quadrilaterals, the worst of which are halved or quartered until the estimates of their errors sum to no more than what is allowed. A shadow that
-//! covers a corner or a side of the element only may be seen by none of the first points. It is seen from the other element's corners, as light goes both ways: if, of what they see
+//! covers a corner or a side of the element only may be seen by none of the first points. It is seen from the other element's corners and the middles of its sides, as light goes both ways: if, of what they see
 //! of the element, sides of blockers are bounds that are none from any of the points, estimates are raised.
 
 use super::bodies::FacetSide;
@@ -10,6 +10,7 @@ use super::element::{Element, Elements, quads};
 use super::facets::Facets;
 use super::hidden::{HiddenSpace, Target};
 use super::row::Share;
+use super::shape::sides;
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
@@ -112,12 +113,13 @@ impl Partly<'_> {
         all
     }
 
-    /// True if, of what corners of the other element see of this one, sides are bounds that are not known.
+    /// True if, of what corners of the other element and middles of its sides see of this one, sides are bounds that are not known.
     fn look_back(&self, known: Vec<FacetSide>, space: &mut HiddenSpace) -> bool {
         let own = Target::new(self.facets, self.elements, [self.to, self.from], self.between, space);
         let count = known.len();
         space.bounds = Some(known);
-        self.to.ring.iter().for_each(|&corner| own.note_bounds(corner, space));
+        let middles = sides(&self.to.ring).map(|[a, b]| a.midpoint(b));
+        self.to.ring.iter().copied().chain(middles).for_each(|eye| own.note_bounds(eye, space));
         space.bounds.take().is_some_and(|bounds| bounds.len() > count)
     }
 }

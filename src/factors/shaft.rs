@@ -22,34 +22,24 @@ impl Plane {
         Self { points: [a, b, c], normal: p.cross(q), permanent }
     }
 
-    /// The sign of `orient3d` of the three points and another one.
+    /// The sign of `orient3d` of the three points and another one, if a filter is sure of it.
     ///
     /// The filter is that of `orient3d` (docs/numerics.md): the determinant is off by less than 10 u times the permanent, of factors that
     /// neither over- nor underflow.
     #[inline]
-    fn side(&self, p: DVec3) -> Sign {
+    fn sure_side(&self, p: DVec3) -> Option<Sign> {
         let r = p - self.points[0];
         let (det, permanent) = (self.normal.dot(r), self.permanent.dot(r.abs()));
-        if permanent > 1e-180 && permanent < 1e120 && r.abs().max_element() < 1e120 && det.abs() > 10.0 * U * permanent
-        {
-            return if det > 0.0 { Sign::Positive } else { Sign::Negative };
-        }
-        exact_side(self.points, p)
+        let is_sure = permanent > 1e-180
+            && permanent < 1e120
+            && r.abs().max_element() < 1e120
+            && det.abs() > 10.0 * U * permanent;
+        is_sure.then_some(if det > 0.0 { Sign::Positive } else { Sign::Negative })
     }
-}
 
-impl Plane {
-    /// True if all points of a box are certainly on the other side than this one.
-    ///
-    /// The filter of [`Self::side`] with the box's farthest corner, and as much again for rounding of its centre and of what it reaches out.
     #[inline]
-    fn is_beyond(&self, side: Sign, centre: DVec3, half: DVec3) -> bool {
-        let r = centre - self.points[0];
-        let height = self.normal.dot(r);
-        let reach = self.normal.abs().dot(half);
-        let bound = 20.0 * U * self.permanent.dot(r.abs() + half);
-        let below = if side == Sign::Positive { -height } else { height };
-        bound > 1e-180 && bound < 1e120 && below - reach > bound
+    fn side(&self, p: DVec3) -> Sign {
+        self.sure_side(p).unwrap_or_else(|| exact_side(self.points, p))
     }
 }
 
@@ -130,8 +120,35 @@ pub(super) enum Blocks {
 pub(super) struct Shaft {
     /// Planes that have both polygons on one side of them or on them, and that side.
     planes: Vec<(Plane, Sign)>,
+    bounds: Vec<Bound>,
     low: DVec3,
     high: DVec3,
+}
+
+/// A plane of a shaft, for boxes: heights over it are positive on the shaft's side.
+struct Bound {
+    normal: DVec3,
+    offset: f64,
+    /// The error of a height is below this times the largest coordinates of the box and of the plane together.
+    error: f64,
+    coordinate: f64,
+}
+
+impl Bound {
+    /// The filter of [`Plane`], with as much again for each of rounding of the offset, of the box's centre and of what it reaches out.
+    fn of(plane: &Plane, side: Sign) -> Self {
+        let normal = if side == Sign::Positive { plane.normal } else { -plane.normal };
+        let error = 40.0 * U * plane.permanent.element_sum();
+        Self { normal, offset: -normal.dot(plane.points[0]), error, coordinate: plane.points[0].abs().max_element() }
+    }
+
+    /// True if all of a box is certainly on the other side; `coordinate` is its largest.
+    #[inline]
+    fn excludes(&self, centre: DVec3, half: DVec3, coordinate: f64) -> bool {
+        let highest = self.normal.dot(centre) + self.offset + self.normal.abs().dot(half);
+        let bound = self.error * (coordinate + self.coordinate);
+        bound > 1e-180 && bound < 1e120 && highest < -bound
+    }
 }
 
 impl Shaft {
@@ -149,28 +166,38 @@ impl Shaft {
                     let (before, after) = other.split_at(m);
                     let others = after[1..].iter().chain(before.iter().rev());
                     let own = ring.iter().enumerate().filter(|&(n, _)| n != k && n != next).map(|(_, p)| p);
-                    if let Some(side) = common_side(others.chain(own).copied(), &plane) {
+                    if let Some(side) = common_side(others.chain(own.clone()).copied(), &plane) {
+                        // There is one more only if this is the plane of the ring itself.
+                        let is_last = own.copied().any(|p| plane.side(p) == side);
                         planes.push((plane, side));
+                        if is_last {
+                            break;
+                        }
                     }
                 }
             }
         }
         let low = all().fold(DVec3::INFINITY, DVec3::min);
         let high = all().fold(DVec3::NEG_INFINITY, DVec3::max);
-        Self { planes, low, high }
+        let bounds = planes.iter().map(|(plane, side)| Bound::of(plane, *side)).collect();
+        Self { planes, bounds, low, high }
     }
 
     /// False if a box is certainly outside of the shaft's own box, or of one of its planes.
     pub(super) fn may_meet(&self, low: DVec3, high: DVec3) -> bool {
         let (centre, half) = (0.5 * (low + high), 0.5 * (high - low));
+        let coordinate = low.abs().max(high.abs()).max_element();
         self.low.cmple(high).all()
             && self.high.cmpge(low).all()
-            && !self.planes.iter().any(|(plane, side)| plane.is_beyond(*side, centre, half))
+            && !self.bounds.iter().any(|bound| bound.excludes(centre, half, coordinate))
     }
 
     /// True if a polygon is certainly outside, though it may touch.
     pub(super) fn excludes(&self, ring: &[DVec3]) -> bool {
-        let is_outside = |(plane, side): &(Plane, Sign)| ring.iter().all(|&p| plane.side(p) != *side);
+        // Mostly some corner is surely inside, and one beside it on the plane.
+        let is_outside = |(plane, side): &(Plane, Sign)| {
+            !ring.iter().any(|&p| plane.sure_side(p) == Some(*side)) && ring.iter().all(|&p| plane.side(p) != *side)
+        };
         let beyond = |axis: usize| {
             ring.iter().all(|p| p[axis] <= self.low[axis]) || ring.iter().all(|p| p[axis] >= self.high[axis])
         };
@@ -181,9 +208,17 @@ impl Shaft {
 }
 
 /// The one side that all points are on that are not on the plane.
-fn common_side(points: impl Iterator<Item = DVec3>, plane: &Plane) -> Option<Sign> {
+fn common_side(points: impl Iterator<Item = DVec3> + Clone, plane: &Plane) -> Option<Sign> {
     let mut common = Sign::Zero;
-    for p in points {
+    // Mostly some are surely on both sides.
+    for side in points.clone().filter_map(|p| plane.sure_side(p)) {
+        if common.is_zero() {
+            common = side;
+        } else if side != common {
+            return None;
+        }
+    }
+    for p in points.filter(|&p| plane.sure_side(p).is_none()) {
         let side = plane.side(p);
         if common.is_zero() {
             common = side;
@@ -227,28 +262,20 @@ impl Line {
         Self { points, along, offset: normal.dot(to), bound, length }
     }
 
-    /// The same for whatever is within rounding of the corner; zero if that is not sure.
+    /// The side of a corner if the filter is sure of it, or, if the corner is itself rounded, of all that is within rounding of it.
     #[inline]
-    fn side_about(&self, corner: &Corner) -> Sign {
+    fn sure_side(&self, corner: &Corner, is_exact: bool) -> Option<Sign> {
         let value = self.along.dot(corner.flat) + self.offset;
         // A point is off by 10 u times the coordinates at most: a third of what the bound is for.
-        let bound = 8.0 * self.bound * (self.length + corner.flat.abs().element_sum());
-        match value {
-            _ if bound <= 1e-180 => Sign::Zero,
-            value if value > bound => Sign::Positive,
-            value if value < -bound => Sign::Negative,
-            _ => Sign::Zero,
-        }
+        let bound = if is_exact { self.bound } else { 8.0 * self.bound };
+        let bound = bound * (self.length + corner.flat.abs().element_sum());
+        // Not below what may have underflowed.
+        let is_sure = value.abs() > bound && bound > 1e-180;
+        is_sure.then_some(if value > 0.0 { Sign::Positive } else { Sign::Negative })
     }
 
     fn side(&self, corner: &Corner) -> Sign {
-        let value = self.along.dot(corner.flat) + self.offset;
-        let bound = self.bound * (self.length + corner.flat.abs().element_sum());
-        // Not below what may have underflowed.
-        if value.abs() > bound && bound > 1e-180 {
-            return if value > 0.0 { Sign::Positive } else { Sign::Negative };
-        }
-        exact_side(self.points, corner.at)
+        self.sure_side(corner, true).unwrap_or_else(|| exact_side(self.points, corner.at))
     }
 }
 
@@ -283,15 +310,13 @@ impl<'a> Blocker<'a> {
     pub(super) fn blocks(&mut self, part: &[Corner], is_exact: bool) -> Blocks {
         let Self { ring, from, frame, spanning, .. } = *self;
         let [own, whole] = self.lies;
-        let side = |line: &Line, corner: &Corner| if is_exact { line.side(corner) } else { line.side_about(corner) };
         let other = match whole {
             Lies::Across => {
                 let plane = self.plane.get_or_insert_with(|| Line::through(spanning, frame));
-                let mut signs = part.iter().map(|corner| side(plane, corner));
-                if !is_exact && signs.clone().any(Sign::is_zero) {
+                if !is_exact && part.iter().any(|corner| plane.sure_side(corner, false).is_none()) {
                     return Blocks::Unknown;
                 }
-                Lies::of_signs(&mut signs)
+                Lies::of_signs(part.iter().map(|corner| plane.side(corner)))
             }
             whole => whole,
         };
@@ -310,24 +335,64 @@ impl<'a> Blocker<'a> {
         }
         let mut hides = true;
         for ([a, b], lines) in sides(ring).zip(self.lines.chunks_exact_mut(from.len())) {
-            let (mut all_inside, mut all_outside) = (true, true);
+            let mut passes = Passes::default();
+            let mut is_sure = true;
             'lines: for (line, &p) in lines.iter_mut().zip(from) {
                 let line = line.get_or_insert_with(|| Line::through([a, b, p], frame));
                 for corner in part {
-                    let sign = side(line, corner);
-                    all_outside &= sign == -inside || is_exact && sign.is_zero();
-                    all_inside &= sign == inside || is_exact && sign.is_zero();
-                    if !all_outside && !(hides && all_inside) {
+                    match line.sure_side(corner, is_exact) {
+                        Some(side) => passes.note(side == inside),
+                        None => is_sure = false,
+                    }
+                    if passes.are_told(hides) {
                         break 'lines;
                     }
                 }
             }
-            if all_outside {
+            if !is_sure && !passes.are_told(hides) {
+                if !is_exact {
+                    hides = false;
+                    continue;
+                }
+                // Those on the plane pass either way.
+                let unsure = lines.iter().flatten().flat_map(|line| part.iter().map(move |corner| (line, corner)));
+                for (line, corner) in unsure.filter(|(line, corner)| line.sure_side(corner, true).is_none()) {
+                    let side = exact_side(line.points, corner.at);
+                    if !side.is_zero() {
+                        passes.note(side == inside);
+                    }
+                    if passes.are_told(hides) {
+                        break;
+                    }
+                }
+            }
+            if !passes.inside {
                 return Blocks::Nothing;
             }
-            hides &= all_inside;
+            hides &= !passes.outside;
         }
         if hides { Blocks::Everything } else { Blocks::Unknown }
+    }
+}
+
+/// Where lines between corners pass a side of a blocker.
+#[derive(Default)]
+struct Passes {
+    inside: bool,
+    outside: bool,
+}
+
+impl Passes {
+    #[inline]
+    fn note(&mut self, is_inside: bool) {
+        self.inside |= is_inside;
+        self.outside |= !is_inside;
+    }
+
+    /// True if more of them change nothing: it hides nothing only if all pass outside, and everything only if all pass all sides inside.
+    #[inline]
+    fn are_told(&self, may_hide_everything: bool) -> bool {
+        self.inside && (self.outside || !may_hide_everything)
     }
 }
 

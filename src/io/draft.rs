@@ -171,7 +171,12 @@ impl<'a> Draft<'a> {
         if scene.polygon_count() == 0 {
             self.warn(&Place::File, "there are no faces");
         }
-        Ok(Loaded { scene, warnings: self.warnings, files: Vec::new() })
+        let place = |k: usize| {
+            let (file, place) = material(k).unwrap_or_else(|| (self.name.to_owned(), Place::File));
+            place.within(&file)
+        };
+        let material_places = (0..scene.materials().len()).map(place).collect();
+        Ok(Loaded { scene, warnings: self.warnings, files: Vec::new(), material_places })
     }
 }
 

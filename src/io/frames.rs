@@ -3,7 +3,7 @@
 use super::error::{Faults, Place, ReadError};
 use super::lines::lines;
 use super::number::parse as parse_number;
-use super::points::{fields, is_header};
+use super::points::{fields, is_header, separation};
 use super::read_regular;
 use glam::DVec3;
 use std::path::Path;
@@ -70,7 +70,8 @@ pub fn parse_frames(bytes: &[u8], name: &str) -> Result<Vec<FrameLine>, ReadErro
 
 fn frame(line: usize, fields: &[&str]) -> Result<FrameLine, String> {
     if fields.len() != COLUMNS.len() {
-        return Err(format!("eye x y z, look-at x y z and fov are 7 fields, not {}", fields.len()));
+        let (count, advice) = (fields.len(), separation(fields));
+        return Err(format!("eye x y z, look-at x y z and fov are 7 fields, not {count}{advice}"));
     }
     let mut values = [0.0; COLUMNS.len()];
     for ((value, field), column) in values.iter_mut().zip(fields).zip(COLUMNS) {
@@ -104,6 +105,9 @@ mod tests {
             p.csv:5: the camera looks at its own eye; look at another point\n\
             p.csv:6: fov: 180 is not above 0 and below 180 degrees";
         assert_eq!(faults(text), expected);
+        let semicolons =
+            "p.csv:1: eye x y z, look-at x y z and fov are 7 fields, not 1; separate them by commas or blanks";
+        assert_eq!(faults("-1;2;3;4;5;6;50\n1 2 3 4 5 6 50\n"), semicolons);
         assert!(faults("").contains("no cameras") && faults("a,b,c,d,e,f,g").contains("no cameras"));
         assert!(parse_frames(b"\xff\xfe\x00,,", "p.csv").is_err());
     }

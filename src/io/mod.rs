@@ -70,7 +70,7 @@ pub use frames::{FrameLine, parse_frames, read_frames};
 pub use geojson::{REGIONS_SCHEMA, write_geojson};
 pub use merl::{parse_merl, read_merl, write_merl};
 #[cfg(feature = "png")]
-pub use png::{contour_picture, write_png};
+pub use png::{PngRows, contour_picture, write_png, write_png_rows};
 pub use point_factors::{POINT_FACTORS_SCHEMA, PointFactorsFormat, PointFactorsWriter};
 pub use points::{PointLine, PointReader, open_points, parse_points, read_points};
 pub use sh::{parse_sh, read_sh, write_sh};
@@ -94,6 +94,8 @@ pub struct Loaded {
     pub warnings: Vec<String>,
     /// The files that were read: the scene first, then its material libraries. Results must not replace them.
     pub files: Vec<PathBuf>,
+    /// Where each material of the scene is defined, as messages start: `room.mtl:7`; the name of the file where that is not known.
+    pub material_places: Vec<String>,
 }
 
 /// How a scene is read.

@@ -23,6 +23,12 @@ pub(super) fn shown(text: &str) -> String {
     format!("`{}{dots}`", start.escape_debug())
 }
 
+/// A finite number with 32 bits: the largest of them where it is larger.
+#[cfg(any(feature = "exr", all(feature = "gltf", feature = "json")))]
+pub(super) fn single(x: f64) -> f32 {
+    (x as f32).clamp(f32::MIN, f32::MAX)
+}
+
 /// A finite number as the shortest text that reads as the same number.
 pub(super) struct Shortest(pub(super) f64);
 

@@ -9,7 +9,8 @@ use glam::{DVec2, DVec3, UVec2};
 const TOLERANCE: f64 = 0.02;
 
 /// Draws the visible regions of an image in a projection, `width` pixels wide, each polygon in the linear colour that `colour` gives it (`None` is the
-/// background); outside of what the picture shows, `outside`. Each pixel has the mean of what is in it, by exact areas.
+/// background); outside of what the picture shows, `outside`. Each pixel has the mean of what is in it, by exact areas. `done` is told of
+/// each region that is painted, how many there are.
 ///
 /// # Errors
 /// If the picture would have no pixels, or too many.
@@ -19,6 +20,7 @@ pub fn flat_picture(
     width: u32,
     outside: DVec3,
     mut colour: impl FnMut(Option<PolygonId>) -> DVec3,
+    mut done: impl FnMut(usize),
 ) -> Result<Picture, SizeError> {
     let window = projector.window();
     let scale = f64::from(width) / window.size().x;
@@ -27,7 +29,9 @@ pub fn flat_picture(
     let mut picture = Picture::new(size, outside)?;
     let mut coverage = Coverage::new(size);
     let place = |p: DVec2| DVec2::new(p.x - window.low.x, window.high.y - p.y) * scale;
-    for FlatRegion { polygon, exterior, holes, .. } in projector.regions(image, TOLERANCE / scale) {
+    let regions = projector.regions(image, TOLERANCE / scale);
+    let count = regions.len();
+    for FlatRegion { polygon, exterior, holes, .. } in regions {
         coverage.clear();
         // Counter-clockwise with y up is clockwise with y down, and then holes run the other way.
         for ring in std::iter::once(&exterior).chain(&holes) {
@@ -35,6 +39,7 @@ pub fn flat_picture(
             coverage.add_ring(&ring);
         }
         picture.add(&coverage, colour(polygon) - outside);
+        done(count);
     }
     Ok(picture)
 }

@@ -41,6 +41,13 @@ impl Picture {
         Ok(Self { size, pixels: vec![colour; count] })
     }
 
+    /// Of those pixels, row by row from the top, as many as there are.
+    pub(crate) fn of_pixels(size: UVec2, pixels: Vec<DVec3>) -> Result<Self, SizeError> {
+        let count = Self::check_size(size)?;
+        assert_eq!(pixels.len(), count, "as many pixels as the picture has");
+        Ok(Self { size, pixels })
+    }
+
     /// How many pixels a picture of that size has.
     pub(crate) fn check_size(size: UVec2) -> Result<usize, SizeError> {
         let count = u64::from(size.x) * u64::from(size.y);
@@ -64,17 +71,6 @@ impl Picture {
     pub fn pixel(&self, x: u32, y: u32) -> DVec3 {
         assert!(x < self.size.x && y < self.size.y, "pixel {x}, {y} of {}", self.size);
         self.pixels[y as usize * self.size.x as usize + x as usize]
-    }
-
-    /// The same picture with all colours times a factor.
-    #[must_use]
-    pub fn times(&self, factor: f64) -> Self {
-        Self { size: self.size, pixels: self.pixels.iter().map(|&colour| colour * factor).collect() }
-    }
-
-    /// Makes a pixel that colour.
-    pub(crate) fn set(&mut self, x: u32, y: u32, colour: DVec3) {
-        self.pixels[y as usize * self.size.x as usize + x as usize] = colour;
     }
 
     /// Adds a colour times the area that each pixel has in a region.

@@ -1,5 +1,6 @@
 //! Why there is no solution.
 
+use crate::brdf::BrdfError;
 use crate::factors::ExchangeError;
 use crate::scene::PolygonId;
 
@@ -7,17 +8,15 @@ use crate::scene::PolygonId;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RadiosityError {
-    /// A material reflects more than it gets, or less than nothing, or its colours are no numbers.
-    #[error(
-        "polygon {polygon}: its material {material} has a diffuse reflectance of {reflectance:?}; each of red, green and blue has to be from 0 to 1"
-    )]
-    BadReflectance {
+    /// A material has no reflectance.
+    #[error("polygon {polygon}: its material {material}: {source}")]
+    BadMaterial {
         /// The first polygon of that material.
         polygon: PolygonId,
         /// The material's name.
         material: String,
-        /// What it says.
-        reflectance: [f64; 3],
+        /// Why.
+        source: BrdfError,
     },
     /// Nothing emits from its front.
     #[error("no polygon emits; give a material an emission (Ke)")]

@@ -67,12 +67,18 @@ impl<'a> Gather<'a> {
         Ok(irradiance.map(|irradiance| emission + reflectance * irradiance))
     }
 
-    /// [`Gather::at`] for many points, in their order, by all threads; `None` where nothing but backs is seen.
+    /// [`Gather::at`] for many points, in their order, by all threads; `None` where nothing but backs is seen. `done` is told of each.
     pub(super) fn uncovered_at_all(
         &self,
         points: Vec<(PolygonId, DVec3)>,
+        done: &(dyn Fn(usize) + Sync),
     ) -> Result<Vec<Option<DVec3>>, RadiosityError> {
-        parallel::map(points, |(patch, near)| self.uncovered(patch, near)).into_iter().collect()
+        let found = parallel::map(points, |(patch, near)| {
+            let found = self.uncovered(patch, near);
+            done(1);
+            found
+        });
+        found.into_iter().collect()
     }
 
     /// [`Gather::at`] for many points, in their order, by all threads.

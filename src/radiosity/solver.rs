@@ -88,17 +88,17 @@ impl<'a> Solver<'a> {
     /// Starts with what patches emit. The exchange is that of the scene, patch by polygon.
     ///
     /// # Errors
-    /// If a material reflects more than 1, or if nothing emits.
+    /// If a material has no reflectance ([`Material::reflectances`](crate::scene::Material::reflectances)), or if nothing emits.
     pub fn new(scene: &Scene, exchange: &'a Exchange, options: SolverOptions) -> Result<Self, RadiosityError> {
         let (mut emission, mut reflectance) = (Vec::new(), Vec::new());
         for PatchInfo { polygon, .. } in exchange.patches() {
             let material = scene.polygon(*polygon).material();
-            if !material.diffuse.iter().all(|x| (0.0..=1.0).contains(x)) {
-                let (polygon, material, reflectance) = (*polygon, material.name.clone(), material.diffuse);
-                return Err(RadiosityError::BadReflectance { polygon, material, reflectance });
-            }
+            let [matt, _] = material.reflectances().map_err(|source| {
+                let (polygon, material) = (*polygon, material.name.clone());
+                RadiosityError::BadMaterial { polygon, material, source }
+            })?;
             emission.push(DVec3::from(material.emission) * PI);
-            reflectance.push(DVec3::from(material.diffuse));
+            reflectance.push(matt);
         }
         let areas = exchange.patches().iter().map(|patch| patch.area);
         if !emission.iter().zip(areas).any(|(&emission, area)| strength(emission) * area > 0.0) {

@@ -1,7 +1,7 @@
 //! A mesh of all surfaces with radiosities at its corners.
 
 use super::{Gather, RadiosityError, strength};
-use crate::scene::{PolygonId, Scene};
+use crate::scene::{PieceRef, PolygonId, Scene};
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -28,12 +28,15 @@ impl Default for SurfaceOptions {
 }
 
 /// Triangles with radiosities at their corners. Triangles of one polygon share corners; those of different polygons do not, as radiosities differ.
+///
+/// A point that sees nothing but backs is *covered*: it is below something that stands there, and what it receives belongs inside of that. So triangles with all corners covered keep what they receive,
+/// as it is seen from inside. Those that are covered in part are seen from outside: their covered corners have the mean radiosity of those that are not, so that what stands there does not darken
+/// what is beside it. Both kinds share no corners.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surface {
     /// The corners.
     pub positions: Vec<DVec3>,
-    /// The radiosity of the front at each corner. Corners that are covered, by what stands on them, have that of their neighbours, so that it
-    /// does not darken what is beside it.
+    /// The radiosity of the front at each corner.
     pub radiosity: Vec<DVec3>,
     /// Corners by their numbers, counter-clockwise seen from the front.
     pub triangles: Vec<[u32; 3]>,
@@ -43,7 +46,7 @@ pub struct Surface {
 
 impl Surface {
     /// Makes the surface of a scene of patches, of which patch k is part of polygon `of[k]`: corners of patches first, then middles of edges as long as radiosities change quickly
-    /// along them. The cost is that of a view for every corner and every edge.
+    /// along them. The cost is that of a view for every patch, every corner and every edge.
     ///
     /// # Errors
     /// If there is no view from some point, or if there are too many corners.
@@ -56,15 +59,35 @@ impl Surface {
         gather: &Gather<'_>,
         options: &SurfaceOptions,
     ) -> Result<Self, RadiosityError> {
+        Self::watched(scene, of, gather, options, &|_| ())
+    }
+
+    /// The same; `done` is told from any thread how many more views are made. How many there will be is not known before.
+    ///
+    /// # Errors
+    /// As [`Surface::new`].
+    ///
+    /// # Panics
+    /// As [`Surface::new`].
+    pub fn watched(
+        scene: &Scene,
+        of: &[PolygonId],
+        gather: &Gather<'_>,
+        options: &SurfaceOptions,
+        done: &(dyn Fn(usize) + Sync),
+    ) -> Result<Self, RadiosityError> {
         let mut surface = Self::default();
-        let mut corners: FxHashMap<(PolygonId, [u64; 3]), u32> = FxHashMap::default();
+        // What covers one patch and not the one beside it stands on the side between them, where both see it otherwise.
+        let is_covered = covered_pieces(scene, gather, done)?;
+        let mut corners: FxHashMap<(PolygonId, bool, [u64; 3]), u32> = FxHashMap::default();
         let mut places = Vec::new();
         for patch in scene.polygons() {
             for piece in patch.pieces() {
                 let ring: Vec<DVec3> = piece.points().collect();
-                let middle = ring.iter().sum::<DVec3>() / ring.len() as f64;
+                let middle = mean_of(&ring);
                 let numbers = ring.iter().map(|&p| {
-                    let key = (of[patch.id().index()], p.to_array().map(f64::to_bits));
+                    let is_covered = is_covered[piece.id().index()];
+                    let key = (of[patch.id().index()], is_covered, p.to_array().map(f64::to_bits));
                     *corners.entry(key).or_insert_with(|| {
                         surface.positions.push(p);
                         places.push((patch.id(), p.lerp(middle, INSIDE)));
@@ -80,18 +103,18 @@ impl Surface {
             surface.check_size(options)?;
         }
         let patches: Vec<PolygonId> = places.iter().map(|place| place.0).collect();
-        let found = gather.uncovered_at_all(places)?;
+        let found = gather.uncovered_at_all(places, done)?;
         let mut is_covered: Vec<bool> = found.iter().map(Option::is_none).collect();
         let radiosity = found.into_iter().zip(patches).map(|(b, patch)| b.unwrap_or(gather.emission(patch)));
         surface.radiosity = radiosity.collect();
         let mean = surface.mean(gather);
         let mut accepted: FxHashSet<[u32; 2]> = FxHashSet::default();
         for _ in 0..options.depth {
-            if !surface.refine(gather, options, mean, &mut accepted, &mut is_covered)? {
+            if !surface.refine(gather, options, mean, &mut accepted, &mut is_covered, done)? {
                 break;
             }
         }
-        surface.fill(is_covered);
+        surface.fill(&is_covered);
         Ok(surface)
     }
 
@@ -121,6 +144,7 @@ impl Surface {
         mean: f64,
         accepted: &mut FxHashSet<[u32; 2]>,
         is_covered: &mut Vec<bool>,
+        done: &(dyn Fn(usize) + Sync),
     ) -> Result<bool, RadiosityError> {
         let mut asked: FxHashSet<[u32; 2]> = FxHashSet::default();
         let (mut edges, mut places) = (Vec::new(), Vec::new());
@@ -136,7 +160,7 @@ impl Surface {
             }
         }
         let patches_of_edges: Vec<PolygonId> = places.iter().map(|place| place.0).collect();
-        let found = gather.uncovered_at_all(places)?.into_iter().zip(patches_of_edges);
+        let found = gather.uncovered_at_all(places, done)?.into_iter().zip(patches_of_edges);
         let mut halves: FxHashMap<[u32; 2], u32> = FxHashMap::default();
         for ((edge, position), (uncovered, patch)) in edges.into_iter().zip(found) {
             let radiosity = uncovered.unwrap_or(gather.emission(patch));
@@ -162,11 +186,15 @@ impl Surface {
         Ok(!halves.is_empty())
     }
 
-    /// Gives covered corners the mean radiosity of those neighbours that have one, from the outside inwards.
-    fn fill(&mut self, mut is_covered: Vec<bool>) {
-        loop {
-            let mut sums: FxHashMap<u32, (DVec3, f64)> = FxHashMap::default();
-            for edge in self.triangles.iter().flat_map(|&triangle| sides(triangle)) {
+    /// Gives covered corners of triangles that are covered in part the mean radiosity of the corners that are not, as corners of their own.
+    fn fill(&mut self, is_covered: &[bool]) {
+        let is_partly = |triangle: &[u32; 3]| {
+            let count = triangle.iter().filter(|&&corner| is_covered[corner as usize]).count();
+            count == 1 || count == 2
+        };
+        let mut sums: FxHashMap<u32, (DVec3, f64)> = FxHashMap::default();
+        for triangle in self.triangles.iter().filter(|triangle| is_partly(triangle)) {
+            for edge in sides(*triangle) {
                 for [from, to] in [edge, [edge[1], edge[0]]] {
                     if is_covered[to as usize] && !is_covered[from as usize] {
                         let sum = sums.entry(to).or_default();
@@ -174,15 +202,49 @@ impl Surface {
                     }
                 }
             }
-            if sums.is_empty() {
-                break;
-            }
-            for (corner, (sum, count)) in sums {
-                self.radiosity[corner as usize] = sum / count;
-                is_covered[corner as usize] = false;
+        }
+        let mut outside: FxHashMap<u32, u32> = FxHashMap::default();
+        for triangle in self.triangles.iter_mut().filter(|triangle| is_partly(triangle)) {
+            for corner in triangle.iter_mut() {
+                if let Some((sum, count)) = sums.get(corner) {
+                    *corner = *outside.entry(*corner).or_insert_with(|| {
+                        self.positions.push(self.positions[*corner as usize]);
+                        self.radiosity.push(*sum / *count);
+                        self.positions.len() as u32 - 1
+                    });
+                }
             }
         }
+        self.drop_unused();
     }
+
+    /// Leaves out corners that no triangle has.
+    fn drop_unused(&mut self) {
+        let mut is_used = vec![false; self.positions.len()];
+        self.triangles.iter().flatten().for_each(|&corner| is_used[corner as usize] = true);
+        let mut number = 0;
+        let numbers: Vec<u32> = is_used.iter().map(|&is_used| (number, number += u32::from(is_used)).0).collect();
+        let mut used = is_used.iter();
+        self.positions.retain(|_| used.next() == Some(&true));
+        let mut used = is_used.iter();
+        self.radiosity.retain(|_| used.next() == Some(&true));
+        self.triangles.iter_mut().flatten().for_each(|corner| *corner = numbers[*corner as usize]);
+    }
+}
+
+/// For each piece whether nothing but backs is seen from its middle.
+fn covered_pieces(
+    scene: &Scene,
+    gather: &Gather<'_>,
+    done: &(dyn Fn(usize) + Sync),
+) -> Result<Vec<bool>, RadiosityError> {
+    let middle = |piece: PieceRef<'_>| (piece.polygon(), mean_of(&piece.points().collect::<Vec<_>>()));
+    let found = gather.uncovered_at_all(scene.pieces().map(middle).collect(), done)?;
+    Ok(found.iter().map(Option::is_none).collect())
+}
+
+fn mean_of(ring: &[DVec3]) -> DVec3 {
+    ring.iter().sum::<DVec3>() / ring.len() as f64
 }
 
 /// The sides of a triangle, from corner k to the next, each by the smaller corner first.

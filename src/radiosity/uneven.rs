@@ -42,7 +42,7 @@ pub fn uneven_patches(
             places.push((patch.id(), middle));
         }
     }
-    let found = gather.uncovered_at_all(places)?;
+    let found = gather.uncovered_at_all(places, &|_| ())?;
     let mean = mean_reflected(gather);
     let is_uneven = |(patch, places): (usize, Vec<usize>)| {
         let emission = gather.emission(PolygonId(patch as u32));

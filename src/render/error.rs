@@ -40,6 +40,19 @@ pub enum RenderError {
     /// There is no such hemicube, or no ray.
     #[error(transparent)]
     Baseline(#[from] BaselineError),
+    /// A light without extent is not fit for use.
+    #[error(transparent)]
+    Light(ReflectError),
+    /// A radiance is more than numbers hold.
+    #[error(
+        "the light in column {x}, row {y} of the picture is brighter than numbers hold (1e308); make emissions and lights smaller"
+    )]
+    TooBright {
+        /// The pixel's column, from 0 at the left.
+        x: u32,
+        /// Its row, from 0 at the top.
+        y: u32,
+    },
     /// There is no view of the camera, or from a light.
     #[error("no view from {from}: {source}")]
     View {

@@ -79,10 +79,27 @@ impl Indirect {
     /// # Panics
     /// If the exchange or the regions are of another number of patches.
     pub fn interpolated(
+        self,
+        exchange: &Exchange,
+        regions: &[PolygonId],
+        options: &SurfaceOptions,
+    ) -> Result<Self, RadiosityError> {
+        self.interpolated_watched(exchange, regions, options, &|_| ())
+    }
+
+    /// The same; `done` is told from any thread how many more views are made.
+    ///
+    /// # Errors
+    /// As [`Surface::new`].
+    ///
+    /// # Panics
+    /// As [`Indirect::interpolated`].
+    pub fn interpolated_watched(
         mut self,
         exchange: &Exchange,
         regions: &[PolygonId],
         options: &SurfaceOptions,
+        done: &(dyn Fn(usize) + Sync),
     ) -> Result<Self, RadiosityError> {
         let count = self.patches.polygon_count();
         let reflected: Vec<DVec3> = self.radiosity.iter().zip(&self.emission).map(|(&b, &e)| b - e).collect();
@@ -90,7 +107,7 @@ impl Indirect {
         let share = |k: u32| if self.is_matt(PolygonId(k)) { DVec3::ONE } else { DVec3::ZERO };
         let receives: Vec<DVec3> = (0..count as u32).map(share).collect();
         let gather = Gather::new(exchange, &nothing, &receives, &reflected);
-        let surface = Surface::new(&self.patches, regions, &gather, options)?;
+        let surface = Surface::watched(&self.patches, regions, &gather, options, done)?;
         let starts = (0..=count).map(|k| surface.patches.partition_point(|patch| patch.index() < k)).collect();
         self.surface = Some(Irradiance { surface, starts });
         Ok(self)

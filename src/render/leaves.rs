@@ -24,7 +24,7 @@ impl<'a> Leaves<'a> {
     fn add(&mut self, brdf: &'a dyn Brdf, outgoing: DVec3) {
         match brdf.form(outgoing) {
             Form::Sum(parts) => parts.iter().for_each(|part| self.add(&**part, outgoing)),
-            Form::Dirac { direction, reflectance } => self.mirrors.push((direction, reflectance)),
+            Form::Dirac { direction, reflectance } => self.add_mirror(direction, reflectance),
             Form::Lobes(lobes) if lobes.iter().all(|lobe| lobe.power == 0) => {
                 let weight: DVec3 = lobes.iter().map(|lobe| lobe.weight).sum();
                 if weight != DVec3::ZERO {
@@ -34,5 +34,34 @@ impl<'a> Leaves<'a> {
             }
             _ => self.glossy.push(brdf),
         }
+    }
+
+    /// Mirrors that show the same are one: each would be followed apart, and so would all that it meets. One that reflects nothing is none.
+    fn add_mirror(&mut self, direction: DVec3, reflectance: DVec3) {
+        if let Some((_, sum)) = self.mirrors.iter_mut().find(|(other, _)| *other == direction) {
+            *sum += reflectance;
+        } else if reflectance != DVec3::ZERO {
+            self.mirrors.push((direction, reflectance));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::brdf::{Fresnel, Lambert, Mirror, Sum};
+
+    #[test]
+    fn mirrors_of_one_direction_are_one() {
+        let [dim, bright] = [0.04, 0.3].map(|at_normal| Fresnel::schlick(DVec3::splat(at_normal)).unwrap());
+        let mirror = |fresnel: Fresnel| -> Box<dyn Brdf> { Box::new(Mirror::new(fresnel)) };
+        let matt: Box<dyn Brdf> = Box::new(Lambert::new(DVec3::splat(0.2)).unwrap());
+        let inner: Box<dyn Brdf> = Box::new(Sum::new(vec![mirror(bright), mirror(dim)]));
+        let sum = Sum::new(vec![mirror(dim), matt, inner]);
+        let outgoing = DVec3::new(0.6, 0.0, 0.8);
+        let leaves = Leaves::new(&sum, outgoing);
+        let reflectance = dim.reflectance(0.8) + bright.reflectance(0.8) + dim.reflectance(0.8);
+        assert_eq!(leaves.mirrors, [(DVec3::new(-0.6, 0.0, 0.8), reflectance)]);
+        assert_eq!((leaves.matt.len(), leaves.glossy.len()), (1, 0));
     }
 }

@@ -16,16 +16,16 @@ pub(super) fn views(order: &SceneOrder, lights: &[Light]) -> Result<Vec<Option<C
             .map_err(|source| RenderError::View { from: "a point light", source }),
         Light::Directional { .. } => Ok(None),
     };
-    lights.iter().map(view).collect()
+    lights.iter().map(|light| light.check().map_err(RenderError::Light).and_then(|()| view(light))).collect()
 }
 
 impl Shader {
-    /// What a point reflects of lights without extent.
+    /// What a point reflects of lights without extent; without a point light that is exactly there.
     pub(super) fn of_lights(&self, space: &mut ViewSpace, place: &Place<'_>) -> Result<DVec3, RenderError> {
         let mut sum = DVec3::ZERO;
         for (light, image) in self.lighting.lights.iter().zip(&self.light_views) {
-            let unhidden = light.unhidden(place.eye(), place.brdf, &place.towards);
-            let unhidden = unhidden.map_err(|source| place.reflect_error(source))?;
+            // All lights are fit for use, but not where they are themselves: there the irradiance of a point light is infinite, on a part of the surface without area.
+            let Ok(unhidden) = light.unhidden(place.eye(), place.brdf, &place.towards) else { continue };
             if unhidden == DVec3::ZERO {
                 continue;
             }

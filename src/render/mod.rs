@@ -34,5 +34,5 @@ mod shader;
 
 pub use error::RenderError;
 pub use indirect::Indirect;
-pub use picture::{Rendered, render};
+pub use picture::{Band, Rendered, render, render_bands};
 pub use shader::{Shader, ShaderOptions, Shading, Spot};

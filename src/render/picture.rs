@@ -14,34 +14,43 @@ pub struct Rendered {
     /// How many points were shaded: one for each polygon in each pixel where it is seen.
     pub points: usize,
     /// The largest of red, green and blue of what each pixel's surfaces reflect, without what they emit; NaN where none is seen.
-    reflected: Vec<f32>,
+    reflected: Vec<f64>,
 }
 
 impl Rendered {
     /// A factor for radiances that brings what is reflected to at most 0.8 in 95% of the pixels that show a surface; 1 if nothing is reflected.
     pub fn auto_exposure(&self) -> f64 {
-        let mut found: Vec<f32> = self.reflected.iter().copied().filter(|radiance| !radiance.is_nan()).collect();
+        let mut found: Vec<f64> = self.reflected.iter().copied().filter(|radiance| !radiance.is_nan()).collect();
         if found.is_empty() {
             return 1.0;
         }
         let at = (found.len() - 1) * 95 / 100;
-        let (_, &mut radiance, _) = found.select_nth_unstable_by(at, f32::total_cmp);
-        if radiance > 0.0 { 0.8 / f64::from(radiance) } else { 1.0 }
+        let (_, &mut radiance, _) = found.select_nth_unstable_by(at, f64::total_cmp);
+        if radiance > 0.0 { (0.8 / radiance).min(f64::MAX) } else { 1.0 }
     }
+}
+
+/// Rows of a picture, from left to right and from the top.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Band {
+    /// Radiances.
+    pub radiances: Vec<DVec3>,
+    /// As [`Rendered`] has them.
+    reflected: Vec<f64>,
 }
 
 /// The sides of the squares of pixels that threads share.
 const TILE: u32 = 16;
-/// So many of them are worked on before their pixels are put into the picture.
-const BATCH: usize = 1024;
+/// Rows of tiles are worked on together until they are so many, or all.
+const BATCH: u32 = 1024;
 
 /// Renders what a camera at `eye` sees. `done` is told from any thread how many more pixels are.
 ///
 /// Which polygon is seen in what part of a pixel is exact; each is shaded at one point of that part ([`PixelPart::direction`]), and the pixel is the sum of areas times radiances. The result does not depend
-/// on the number of threads. Memory: the picture, the contour image, and what a thousand tiles of 16 x 16 pixels show.
+/// on the number of threads. Memory: 32 bytes for each pixel, and what [`render_bands`] takes.
 ///
 /// # Errors
-/// If the picture would have no pixels or too many, if there is no view of the camera, or if a point cannot be shaded.
+/// If the picture would have no pixels or too many, if there is no view of the camera, if a point cannot be shaded, or if a radiance is not finite.
 pub fn render(
     shader: &Shader,
     eye: DVec3,
@@ -49,38 +58,65 @@ pub fn render(
     size: UVec2,
     done: &(dyn Fn(usize) + Sync),
 ) -> Result<Rendered, RenderError> {
-    let mut picture = Picture::new(size, DVec3::ZERO)?;
-    let mut reflected = vec![f32::NAN; picture.pixels().len()];
+    Picture::check_size(size)?;
+    let mut whole = Band::default();
+    let points = render_bands(shader, eye, camera, size, done, |band| {
+        whole.radiances.extend(band.radiances);
+        whole.reflected.extend(band.reflected);
+        Ok::<(), RenderError>(())
+    })?;
+    Ok(Rendered { picture: Picture::of_pixels(size, whole.radiances)?, points, reflected: whole.reflected })
+}
+
+/// The same, but rows are given away as soon as they are made, some at a time, from the top; for pictures that are too large to keep. Gives the number of points that were shaded. Memory: the contour image, some
+/// 16 x 16 x 1024 pixels, or 16 rows if those are more, and what is seen in them.
+///
+/// # Errors
+/// As [`render`], and those of `take`.
+pub fn render_bands<E: From<RenderError>>(
+    shader: &Shader,
+    eye: DVec3,
+    camera: &Frustum,
+    size: UVec2,
+    done: &(dyn Fn(usize) + Sync),
+    mut take: impl FnMut(Band) -> Result<(), E>,
+) -> Result<usize, E> {
     let image = shader.order().view(&Viewpoint::free(eye), &Domain::Frustum(*camera));
     let image = image.map_err(|source| RenderError::View { from: "the camera", source })?;
-    let Some(parts) = PixelParts::new(&image, size)? else { unreachable!("it is the image of a camera") };
-    let tiles: Vec<UVec2> = (0..size.y.div_ceil(TILE))
-        .flat_map(|y| (0..size.x.div_ceil(TILE)).map(move |x| UVec2::new(x, y) * TILE))
-        .collect();
+    let parts = PixelParts::new(&image, size).map_err(RenderError::from)?;
+    let Some(parts) = parts else { unreachable!("it is the image of a camera") };
+    let columns = size.x.div_ceil(TILE);
+    let rows = (BATCH / columns).max(1) * TILE;
     let mut points = 0;
-    for batch in tiles.chunks(BATCH) {
-        let found = parallel::map(batch.to_vec(), |low| {
+    for top in (0..size.y).step_by(rows as usize) {
+        let bottom = top.saturating_add(rows).min(size.y);
+        let lows = (top..bottom).step_by(TILE as usize);
+        let lows = lows.flat_map(|y| (0..columns).map(move |x| UVec2::new(x * TILE, y)));
+        let tiles = parallel::map(lows.collect(), |low| {
             let tile = Tile::new(shader, &parts, low);
             if let Ok(tile) = &tile {
                 done(tile.pixels.len());
             }
             tile
         });
-        for tile in found {
+        let count = size.x as usize * (bottom - top) as usize;
+        let mut band = Band { radiances: vec![DVec3::ZERO; count], reflected: vec![f64::NAN; count] };
+        for tile in tiles {
             let tile = tile?;
             points += tile.points;
             for (x, y, colour, largest) in tile.pixels {
-                reflected[y as usize * size.x as usize + x as usize] = largest;
-                picture.set(x, y, colour);
+                let at = (y - top) as usize * size.x as usize + x as usize;
+                (band.radiances[at], band.reflected[at]) = (colour, largest);
             }
         }
+        take(band)?;
     }
-    Ok(Rendered { picture, points, reflected })
+    Ok(points)
 }
 
 /// The pixels of a tile: column, row, radiance, and the largest of what is reflected.
 struct Tile {
-    pixels: Vec<(u32, u32, DVec3, f32)>,
+    pixels: Vec<(u32, u32, DVec3, f64)>,
     points: usize,
 }
 
@@ -92,6 +128,7 @@ impl Tile {
             if failure.is_none() {
                 let number = u64::from(y) << 32 | u64::from(x);
                 match shade(shader, parts, number, of_pixel) {
+                    Ok((colour, _)) if !colour.is_finite() => failure = Some(RenderError::TooBright { x, y }),
                     Ok((colour, reflected)) => tile.pixels.push((x, y, colour, reflected)),
                     Err(error) => failure = Some(error),
                 }
@@ -108,7 +145,7 @@ fn shade(
     parts: &PixelParts<'_>,
     number: u64,
     of_pixel: &[PixelPart],
-) -> Result<(DVec3, f32), RenderError> {
+) -> Result<(DVec3, f64), RenderError> {
     let (mut sum, mut reflected, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
     for (k, part) in of_pixel.iter().enumerate() {
         let cell = parts.image().cell(part.cell);
@@ -125,5 +162,5 @@ fn shade(
         reflected += from_light * part.area;
         area += part.area;
     }
-    Ok((sum, if area > 0.0 { (reflected / area).max_element() as f32 } else { f32::NAN }))
+    Ok((sum, if area > 0.0 { (reflected / area).max_element() } else { f64::NAN }))
 }

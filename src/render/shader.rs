@@ -94,7 +94,7 @@ impl Shader {
     /// For a scene whose materials reflect as they say ([`Material::brdf`](crate::scene::Material::brdf)), lit by what its polygons emit and by `lighting`.
     ///
     /// # Errors
-    /// If a material has no BRDF, if there is no such hemicube, no ray, or no view from a light.
+    /// If a material has no BRDF, if a light is not fit for use, or if there is no such hemicube, no ray, or no view from a light.
     pub fn new(order: SceneOrder, lighting: Lighting, options: ShaderOptions) -> Result<Self, RenderError> {
         let brdfs = order.scene().materials().iter().map(|material| {
             material.brdf().map_err(|source| RenderError::Material { material: material.name.clone(), source })

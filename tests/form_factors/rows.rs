@@ -58,6 +58,28 @@ fn entries_of_a_city_are_within_the_tolerance_of_many_views() {
 }
 
 #[test]
+fn what_is_seen_through_a_gap_only_is_found() {
+    // A wall at the end of a city, over the roofs and from a wedge of a twelfth of a square, on which no point of a rule lies.
+    let scene = city::city(6).expect("a city");
+    let [square, wall] = [153, 372];
+    let expected = by_many_views(&scene, &SceneOrder::new(&scene), PolygonId(square as u32), 48)[wall];
+    let tolerance = 1e-6;
+    // The views' midpoint rule is off by the jump at the wedge's sides over a cell's width: a tenth of it at most.
+    assert!((1.6e-6..2.0e-6).contains(&expected), "{expected:e}");
+    let exchange = exchange(&scene, PatchPlan::Polygons, tolerance);
+    let found = factor(&exchange.row(square).expect("a row"), wall as u32);
+    assert!((found - expected).abs() < 0.2 * tolerance, "{found:e} instead of {expected:e}");
+    // Once more, by points on either patch, each within the tolerance of a factor from there.
+    let patches = exchange.patches();
+    for [from, to] in [[square, wall], [wall, square]] {
+        let again = exchange.by_points(from, to).expect("patches").expect("both are alone");
+        let there = found * patches[square].area / patches[from].area;
+        assert!((again.factor - there).abs() < tolerance, "{from}: {again:?} instead of {there:e}");
+    }
+    assert!(exchange.by_points(square, patches.len()).is_err());
+}
+
+#[test]
 fn rows_are_the_same_bits_for_any_number_of_threads_and_in_any_order() {
     let scene = city::city(2).expect("a city");
     let exchange = exchange(&scene, PatchPlan::Polygons, 1e-3);
@@ -209,6 +231,19 @@ fn what_cannot_be_is_refused_with_a_reason() {
     let exchange = exchange(&scene, PatchPlan::Polygons, 1e-3);
     assert_eq!(exchange.row(6), Err(ExchangeError::UnknownPatch { patch: 6, count: 6 }));
     assert!(exchange.rows(0..7, |_| Ok::<(), ExchangeError>(())).is_err());
+}
+
+#[test]
+fn a_patch_that_is_lost_in_its_scene_is_refused_rather_than_without_area() {
+    // Of area 1, beside one that is 1e100 long.
+    let small = rectangle([0.; 3], [1., 0., 0.], [0., 1., 0.]);
+    let long = rectangle([0., 0., 1.], [1e100, 0., 0.], [0., 1., 0.]);
+    let scene = scene_of(&[small, long]);
+    let new = |plan| Exchange::new(&scene, plan, ExchangeOptions::default()).map(|_| ());
+    for plan in [PatchPlan::Polygons, PatchPlan::Objects] {
+        let polygon = PolygonId(0);
+        assert_eq!(new(plan), Err(ExchangeError::TooSmall { polygon }), "{plan:?}");
+    }
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use crate::args::{Common, Loading, Order, Way};
 use crate::failure::Failure;
+use crate::materials::Materials;
 use crate::output::{clear, have_folders, keep};
 use crate::repairs::changes;
 use nusselt::bsp::{BspError, BspOptions, SceneBsp};
@@ -19,6 +20,17 @@ pub(crate) fn load<'a>(
     loading: &Loading,
     common: &Common,
 ) -> Result<(Scene, f64), Failure> {
+    let (scene, _, seconds) = load_materials(path, outputs, loading, common)?;
+    Ok((scene, seconds))
+}
+
+/// The same with where its materials are defined.
+pub(crate) fn load_materials<'a>(
+    path: &Path,
+    outputs: impl Iterator<Item = &'a Path> + Clone,
+    loading: &Loading,
+    common: &Common,
+) -> Result<(Scene, Materials, f64), Failure> {
     keep(&[path.to_owned()], outputs.clone())?;
     have_folders(outputs.clone())?;
     outputs.clone().for_each(clear);
@@ -32,7 +44,7 @@ pub(crate) fn load<'a>(
     for change in changes(loaded.scene.repairs()) {
         common.warn(&format!("{}: {change}", path.display()));
     }
-    Ok((loaded.scene, seconds))
+    Ok((loaded.scene, Materials::new(loaded.material_places), seconds))
 }
 
 /// What is wrong with a file, and with which repair its broken faces would be left out.

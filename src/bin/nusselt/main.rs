@@ -10,6 +10,7 @@ mod form_factors;
 mod info;
 mod input;
 mod lighting;
+mod materials;
 mod output;
 mod place;
 mod point_factors;

@@ -1,6 +1,7 @@
 //! A line on stderr that tells how far the work is.
 
 use std::io::{IsTerminal, Write, stderr};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Shown if stderr is a terminal; gone when it is dropped.
@@ -28,6 +29,12 @@ impl Progress {
         self.note = note;
     }
 
+    /// One more is done, of so many as turn out to be.
+    pub(crate) fn add_of(&mut self, total: usize) {
+        self.total = Some(total);
+        self.add(1);
+    }
+
     /// So many more are done.
     pub(crate) fn add(&mut self, count: usize) {
         self.done += count;
@@ -50,6 +57,21 @@ impl Progress {
     }
 }
 
+/// The same, told by several threads.
+pub(crate) struct SharedProgress(Mutex<Progress>);
+
+impl SharedProgress {
+    /// As [`Progress::new`].
+    pub(crate) fn new(what: &'static str, total: Option<usize>, quiet: bool) -> Self {
+        Self(Mutex::new(Progress::new(what, total, quiet)))
+    }
+
+    /// So many more are done.
+    pub(crate) fn add(&self, count: usize) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).add(count);
+    }
+}
+
 impl Drop for Progress {
     fn drop(&mut self) {
         if self.shown.is_some() {
@@ -69,7 +91,10 @@ mod tests {
         progress.add(5);
         assert_eq!(progress.line(10.0), "25 of 100 views, 2.5/s, 30 s left");
         assert!(progress.shown.is_none(), "quiet");
+        progress.add_of(52);
+        assert_eq!(progress.line(13.0), "26 of 52 views, 2.0/s, 13 s left");
         progress.total = None;
+        progress.done -= 1;
         assert_eq!(progress.line(10.0), "25 views, 2.5/s");
     }
 }

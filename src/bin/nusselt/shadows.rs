@@ -92,10 +92,13 @@ impl ShadowsOf {
             return Ok(());
         }
         let count = |pick: fn(&[f64; 2]) -> bool| areas.iter().filter(|area| pick(area)).count();
-        let [partly, wholly] = [count(|[lit, dark]| *lit > 0.0 && *dark > 0.0), count(|[_, dark]| *dark == 0.0)];
+        let partly = count(|[lit, dark]| *lit > 0.0 && *dark > 0.0);
+        let wholly = count(|[lit, dark]| *lit > 0.0 && *dark == 0.0);
+        let none = count(|[lit, dark]| *lit == 0.0 && *dark == 0.0);
+        let none = if none > 0 { format!(", {none} without area") } else { String::new() };
         let mut lines = Lines::default();
         lines.add("light", vector(self.light));
-        lines.add("polygons", format!("{}, of them {wholly} lit, {partly} in part", areas.len()));
+        lines.add("polygons", format!("{}, of them {wholly} lit, {partly} in part{none}", areas.len()));
         lines.add("lit", format!("area {}", number(lit)));
         lines.add("shadow", format!("area {}", number(dark)));
         lines.add("parts", format!("{} with {} vertices", shadows.parts().len(), shadows.vertices().len()));

@@ -52,6 +52,11 @@ pub(crate) fn number(x: f64) -> String {
     if x == 0.0 || (1e-5..1e12).contains(&x.abs()) { format!("{}", x + 0.0) } else { format!("{x:e}") }
 }
 
+/// How small something is.
+pub(crate) fn short(x: f64) -> String {
+    if x == 0.0 { "0".to_owned() } else { format!("{x:.1e}") }
+}
+
 /// So many of each kind of thing are named, the rest is only counted.
 const NAMED: usize = 20;
 

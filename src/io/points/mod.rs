@@ -85,9 +85,16 @@ pub(super) fn fields(text: &str) -> Vec<&str> {
     fields
 }
 
-/// True for a first line in which nothing is a number.
+/// True for a first line in which nothing is a number, nor begins like one: `1;2;3` is a line whose fields are not told apart.
 pub(super) fn is_header(fields: &[&str]) -> bool {
-    fields.iter().all(|field| field.parse::<f64>().is_err())
+    let begins = |field: &str| field.trim_start_matches(['+', '-', '.']).starts_with(|c: char| c.is_ascii_digit());
+    fields.iter().all(|field| field.parse::<f64>().is_err() && !begins(field))
+}
+
+/// What to do with a line of the wrong number of fields, if that can be told.
+pub(super) fn separation(fields: &[&str]) -> &'static str {
+    let is_separated_otherwise = fields.iter().any(|field| field.contains([';', '|']));
+    if is_separated_otherwise { "; separate them by commas or blanks" } else { "" }
 }
 
 fn point(line: usize, fields: &[&str]) -> Result<PointLine, String> {
@@ -96,7 +103,10 @@ fn point(line: usize, fields: &[&str]) -> Result<PointLine, String> {
         [numbers @ .., ""] if numbers.len() == 6 => (numbers, None),
         [numbers @ .., polygon] if numbers.len() == 6 => (numbers, Some(*polygon)),
         numbers if numbers.len() == 6 => (numbers, None),
-        _ => return Err(format!("x y z nx ny nz [polygon] are 6 or 7 fields, not {}", fields.len())),
+        _ => {
+            let (count, advice) = (fields.len(), separation(fields));
+            return Err(format!("x y z nx ny nz [polygon] are 6 or 7 fields, not {count}{advice}"));
+        }
     };
     let mut values = [0.0; 6];
     for (value, (field, column)) in values.iter_mut().zip(numbers.iter().zip(["x", "y", "z", "nx", "ny", "nz"])) {
@@ -139,6 +149,9 @@ mod tests {
     fn all_faults_are_named_by_line() {
         assert_eq!(faults(""), "p.csv: it has no points; a line is x y z nx ny nz [polygon]");
         assert_eq!(faults("x y z nx ny nz"), faults(""));
+        let semicolons =
+            "p.csv:1: x y z nx ny nz [polygon] are 6 or 7 fields, not 1; separate them by commas or blanks";
+        assert_eq!(faults("0.5;-2;3;0;0;1\n1 2 3 0 0 1\n"), semicolons);
         let text = "1 2 3\n1,2,3,0,,1\n1 2 3 0 0 inf\n1 2 3 0 0 0\n1 2 3 0 0 1 -2\n1 2 3 0 0 1 2 3\nx 2 3 0 0 1\n0 0 0 0 0 1\n";
         let expected = "p.csv:1: x y z nx ny nz [polygon] are 6 or 7 fields, not 3\n\
             p.csv:2: ny is empty\n\

@@ -1,5 +1,6 @@
 //! A page that shows a surface, all in one file.
 
+use crate::io::number::{Shortest, single};
 use crate::radiosity::Surface;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -11,11 +12,22 @@ use std::io::{self, Write};
 const PAGE: &str = include_str!("viewer.html");
 
 /// Writes a page with the surface in it, which any browser with WebGL shows without a network: turned by dragging, nearer and farther by the wheel, with
-/// the exposure, the edges of patches, and backs to choose. Radiances are floats; `exposure` is what it starts with.
+/// the exposure, the edges of patches, backs, and what is up to choose. Radiances are floats, times `exposure`; `up` is what it starts with, a direction of any length.
 ///
 /// # Errors
 /// Those of `out`, or if there are more corners than 2^32.
-pub fn write_radiosity_html(surface: &Surface, title: &str, exposure: f64, out: &mut impl Write) -> io::Result<()> {
+///
+/// # Panics
+/// If `up` is zero or not finite.
+pub fn write_radiosity_html(
+    surface: &Surface,
+    title: &str,
+    exposure: f64,
+    up: DVec3,
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let up = (up / up.abs().max_element()).normalize();
+    assert!(up.is_finite(), "a direction");
     let (low, high) = surface
         .positions
         .iter()
@@ -23,19 +35,19 @@ pub fn write_radiosity_html(surface: &Surface, title: &str, exposure: f64, out: 
     let middle = if low.is_finite() { low.midpoint(high) } else { DVec3::ZERO };
     let scale = if low.is_finite() { 2.0 / (high - low).length().max(f64::MIN_POSITIVE) } else { 1.0 };
     let floats = |vectors: &mut dyn Iterator<Item = DVec3>| {
-        let bytes = vectors.flat_map(|v| v.as_vec3().to_array()).flat_map(f32::to_le_bytes);
+        let bytes = vectors.flat_map(|v| v.to_array().map(single)).flat_map(f32::to_le_bytes);
         STANDARD.encode(bytes.collect::<Vec<u8>>())
     };
     let integers = |numbers: &mut dyn Iterator<Item = u32>| {
         STANDARD.encode(numbers.flat_map(u32::to_le_bytes).collect::<Vec<u8>>())
     };
     let positions = floats(&mut surface.positions.iter().map(|&p| (p - middle) * scale));
-    let radiances = floats(&mut surface.radiosity.iter().map(|&b| b / PI));
+    let radiances = floats(&mut surface.radiosity.iter().map(|&b| b / PI * exposure));
     let triangles = integers(&mut surface.triangles.iter().flatten().copied());
     let edges = integers(&mut edges(surface).into_iter().flatten());
     let fields = [
         ("{{title}}", escaped(title)),
-        ("{{exposure}}", format!("{exposure:e}")),
+        ("{{up}}", format!("{},{},{}", Shortest(up.x), Shortest(up.y), Shortest(up.z))),
         ("{{positions}}", positions),
         ("{{radiances}}", radiances),
         ("{{triangles}}", triangles),

@@ -1,6 +1,7 @@
 //! Surfaces with colours.
 
 use crate::io::gltf::GlbMesh;
+use crate::io::number::single;
 use crate::io::srgb::encoded;
 use crate::radiosity::Surface;
 use crate::scene::Scene;
@@ -27,7 +28,7 @@ pub fn auto_exposure(surface: &Surface, emission: &[DVec3]) -> f64 {
     while let Some((radiance, area)) = found.pop() {
         left -= area;
         if left <= 0.0 {
-            return if radiance > 0.0 { 0.8 / radiance } else { 1.0 };
+            return if radiance > 0.0 { (0.8 / radiance).min(f64::MAX) } else { 1.0 };
         }
     }
     1.0
@@ -89,7 +90,7 @@ pub fn write_radiosity_ply(surface: &Surface, exposure: f64, out: &mut impl Writ
         }
         out.write_all(&(*radiosity / PI * exposure).to_array().map(encoded))?;
         for x in radiosity.to_array() {
-            out.write_all(&(x as f32).to_le_bytes())?;
+            out.write_all(&single(x).to_le_bytes())?;
         }
     }
     for triangle in &surface.triangles {

@@ -38,8 +38,9 @@ impl StateKey {
     pub fn new(scene: &crate::scene::Scene, tolerance: f64) -> Self {
         let materials = scene.polygons().fold(Digest::EMPTY, |digest, polygon| {
             let material = polygon.material();
-            let colours = material.diffuse.iter().chain(&material.emission);
-            colours.fold(digest, |digest, x| digest.with(&x.to_bits().to_le_bytes()))
+            let [reflected, _] = material.reflectances().unwrap_or_default();
+            let colours = [reflected.to_array(), material.emission];
+            colours.iter().flatten().fold(digest, |digest, x| digest.with(&x.to_bits().to_le_bytes()))
         });
         let patches = crate::io::matrix::scene_digest(scene);
         Self { patches, materials, tolerance, overshoot: false, halving: None }

@@ -5,10 +5,10 @@ mod parse;
 pub(crate) use parse::colour;
 
 use crate::failure::Failure;
+use crate::materials::Numbered;
 use nusselt::brdf::{Brdf, Sum, Unmeasured};
 use nusselt::io::{ReadError, read_merl, read_sh};
-use nusselt::scene::Material;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// The grammar, for `--help`.
@@ -47,11 +47,11 @@ enum Part {
 }
 
 impl BrdfSpec {
-    /// What it is on a surface of that material; `None` where one stands on no polygon. `file` is that of the scene.
-    pub(crate) fn brdf(&self, material: Option<&Material>, file: &Path) -> Result<Box<dyn Brdf>, Failure> {
+    /// What it is on a surface of that material; `None` where one stands on no polygon.
+    pub(crate) fn brdf(&self, material: Option<Numbered<'_>>) -> Result<Box<dyn Brdf>, Failure> {
         let mut parts = Vec::with_capacity(self.parts.len());
         for part in &self.parts {
-            parts.push(part.brdf(material, file)?);
+            parts.push(part.brdf(material)?);
         }
         Ok(match parts.len() {
             1 => parts.swap_remove(0),
@@ -66,14 +66,12 @@ impl BrdfSpec {
 }
 
 impl Part {
-    fn brdf(&self, material: Option<&Material>, file: &Path) -> Result<Box<dyn Brdf>, Failure> {
+    fn brdf(&self, material: Option<Numbered<'_>>) -> Result<Box<dyn Brdf>, Failure> {
         match (self, material) {
             (Self::Model(model), _) => Ok(Box::new(model.clone())),
             (Self::Merl(path), _) => Ok(Box::new(read_merl(path, Unmeasured::default()).map_err(|error| refused(&error))?)),
             (Self::Sh(path), _) => Ok(Box::new(read_sh(path).map_err(|error| refused(&error))?)),
-            (Self::Material, Some(material)) => material
-                .brdf()
-                .map_err(|error| Failure::about(file, &format_args!("material {:?}: {error}", material.name))),
+            (Self::Material, Some(material)) => material.brdf(),
             (Self::Material, None) => Err(Failure::Usage(
                 "--brdf material is that of the polygon that --eye is on, and it is on none; give --on K, or another model"
                     .to_owned(),

@@ -9,6 +9,7 @@ use crate::args::{
 use crate::failure::Failure;
 use crate::input::{build_order, check_way, load, way};
 use crate::output::{check_once, print, print_json, write_file, write_obj};
+use crate::progress::Progress;
 use crate::proof::{Proof, prove};
 use crate::summary::Timing;
 use glam::DVec3;
@@ -248,7 +249,9 @@ impl Contour {
             }
             Format::Png => {
                 let projector = projector(image, projection)?;
-                let picture = contour_picture(image, &projector, self.width);
+                let mut progress = Progress::new("regions painted", None, common.quiet);
+                let picture = contour_picture(image, &projector, self.width, |count| progress.add_of(count));
+                drop(progress);
                 let picture = picture.map_err(|error| Failure::Usage(format!("--width: {error}")))?;
                 write_file(path, |out| write_png(&picture, out))
             }

@@ -1,5 +1,6 @@
 //! A sample of the scene's views, proved.
 
+use super::pairs::PairCheck;
 use crate::failure::Failure;
 use crate::proof::{name, prove};
 use crate::summary::Lines;
@@ -25,6 +26,8 @@ pub(super) struct Proved {
     certificate: CertificateRow,
     /// From the middles of these polygons.
     polygons: Vec<u32>,
+    /// Some of the factors, computed once more; `None` where backs count.
+    pub(super) pairs: Option<PairCheck>,
     #[serde(skip)]
     arithmetic: Arithmetic,
     #[serde(skip)]
@@ -56,13 +59,13 @@ pub(super) fn prove_sample(
         all.exact_decisions += exact_decisions;
     }
     let polygons = sample.iter().map(|polygon| polygon.0).collect();
-    Ok(Proved { certificate: all.into(), polygons, arithmetic, ms: start.elapsed().as_secs_f64() * 1e3 })
+    Ok(Proved { certificate: all.into(), polygons, pairs: None, arithmetic, ms: start.elapsed().as_secs_f64() * 1e3 })
 }
 
 /// At most [`MOST`], the first and the last among them.
-fn evenly(polygons: &[PolygonId]) -> Vec<PolygonId> {
-    let count = polygons.len().min(MOST);
-    (0..count).map(|k| polygons[k * (polygons.len() - 1) / (count - 1).max(1)]).collect()
+pub(super) fn evenly<T: Copy>(all: &[T]) -> Vec<T> {
+    let count = all.len().min(MOST);
+    (0..count).map(|k| all[k * (all.len() - 1) / (count - 1).max(1)]).collect()
 }
 
 fn prove_from(
@@ -88,6 +91,9 @@ impl Proved {
             "proof",
             format!("holds for all directions of {views} views; {arithmetic} arithmetic, {ms:.0} ms with the views"),
         );
+        if let Some(pairs) = &self.pairs {
+            lines.add("pairs", pairs.in_words());
+        }
     }
 }
 
@@ -98,7 +104,7 @@ mod tests {
     #[test]
     fn a_sample_spans_all_patches() {
         let polygons = |count: u32| (0..count).map(PolygonId).collect::<Vec<_>>();
-        assert!(evenly(&[]).is_empty());
+        assert!(evenly::<PolygonId>(&[]).is_empty());
         assert_eq!(evenly(&polygons(1)), polygons(1));
         assert_eq!(evenly(&polygons(16)), polygons(16));
         let sample = evenly(&polygons(1000));

@@ -4,6 +4,7 @@ mod certify;
 mod enforce;
 mod merge;
 mod options;
+mod pairs;
 mod patches;
 mod reciprocity;
 mod report;
@@ -14,15 +15,17 @@ use crate::failure::Failure;
 use crate::input::load;
 use crate::output::{Unwritten, print, print_json};
 use crate::progress::Progress;
+use crate::summary::number;
 use nusselt::factors::{Exchange, ExchangeError, ExchangeOptions, PatchPlan, Row, Sides};
 use nusselt::io::matrix::{MatrixCsv, MatrixError, MatrixJob, MatrixWriter};
 use nusselt::scene::Scene;
 use nusselt::verify::Arithmetic;
+use pairs::{PairCheck, PairSample};
 use report::{Asked, Report, Times};
 use std::io::{self, BufWriter, ErrorKind};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use tally::Tally;
 
 const EXAMPLE: &str = "\
@@ -82,7 +85,8 @@ pub(crate) struct FormFactors {
     #[arg(long, requires = "output", conflicts_with_all = ["rows", "resume", "two_sided"])]
     enforce_reciprocity: bool,
     /// Before anything is computed, prove the views from the middles of up to 16 patches, for all directions, and say so;
-    /// =rational shares no predicate with what made them, and takes about a hundred times as long
+    /// =rational shares no predicate with what made them, and takes about a hundred times as long. Up to 256 factors are computed once more
+    /// at the end, from the other patch of each pair
     #[arg(long, value_name = "kernel|rational", num_args = 0..=1, require_equals = true,
         default_missing_value = "kernel", value_parser = parse_arithmetic)]
     certify: Option<Arithmetic>,
@@ -114,11 +118,12 @@ impl FormFactors {
         let rows = job.manifest().map_err(|error| refused(file, error))?.rows();
         // Before anything is written.
         let proved = self.certify.map(|by| certify::prove_sample(file, &scene, exchange.patches(), rows.clone(), by));
-        let proved = proved.transpose()?;
+        let mut proved = proved.transpose()?;
         if let Some(path) = &self.patches {
             patches::write(path, exchange.patches())?;
         }
         let mut tally = Tally::new(exchange.patches(), rows.clone(), self.tolerance, self.two_sided);
+        tally.sample = (proved.is_some() && !self.two_sided).then(|| PairSample::new(exchange.patches(), rows.clone()));
         let mut work = Work { file, exchange: &exchange, tally: &mut tally, times: &mut times, quiet: common.quiet };
         let mut enforced = None;
         match &self.output {
@@ -128,10 +133,14 @@ impl FormFactors {
             None => {
                 let printed = work.print_all(rows);
                 tally.warn(common);
+                self.check_pairs(&tally, &exchange, common)?;
                 return printed;
             }
         }
         tally.warn(common);
+        if let Some(proved) = &mut proved {
+            proved.pairs = self.check_pairs(&tally, &exchange, common)?;
+        }
         let patches = exchange.patches().len();
         let asked = Asked { patch: self.plan_name(), patches, two_sided: self.two_sided, rows };
         let mut report = Report::new(&scene, asked, &tally, &times, proved.as_ref());
@@ -140,6 +149,25 @@ impl FormFactors {
             return print_json(&report);
         }
         if common.quiet { Ok(()) } else { print(&report.in_words(self.output.as_deref())) }
+    }
+
+    /// Computes a sample of pairs once more, and warns if it does not agree.
+    fn check_pairs(
+        &self,
+        tally: &Tally<'_>,
+        exchange: &Exchange,
+        common: &Common,
+    ) -> Result<Option<PairCheck>, Failure> {
+        let Some(sample) = &tally.sample else { return Ok(None) };
+        let check = sample.check(exchange, self.tolerance).map_err(|error| Failure::Work(error.to_string()))?;
+        if check.pairs_above_tolerance > 0 {
+            let (above, checked, tolerance) = (check.pairs_above_tolerance, check.checked, number(self.tolerance));
+            common.warn(&format!(
+                "{above} of {checked} pairs, computed once more from their other patch, differ by more than the tolerance \
+                 {tolerance}; take a smaller one to have that accuracy"
+            ));
+        }
+        Ok(Some(check))
     }
 
     fn prepare(&self, file: &Path, scene: &Scene) -> Result<Exchange, Failure> {
@@ -193,11 +221,6 @@ fn refused(scene: &Path, error: MatrixError) -> Failure {
     }
 }
 
-/// Rows that are computed together at most: those of one chunk of the library.
-const MOST_ROWS: u32 = 256;
-/// Chunks grow until they take about this long: so much work is lost by an interruption, and so often one sees how far it is.
-const CHUNK_TIME: Duration = Duration::from_secs(1);
-
 /// What is to be done for every row.
 struct Work<'a, 'p> {
     file: &'a Path,
@@ -244,32 +267,44 @@ impl Work<'_, '_> {
         }
     }
 
-    /// Computes rows in all threads, and hands them on in their order.
-    fn run(&mut self, rows: Range<u32>, mut write: impl FnMut(&Row) -> Result<(), Unwritten>) -> Result<(), Unwritten> {
-        let mut progress = Progress::new("rows", Some(rows.len()), self.quiet);
-        let mut count = (4 * rayon::current_num_threads() as u32).min(MOST_ROWS);
-        let mut next = rows.start;
-        while next < rows.end {
-            let end = rows.end.min(next.saturating_add(count));
-            let start = Instant::now();
-            let mut chunk = Vec::with_capacity((end - next) as usize);
-            let made = self.exchange.rows(next as usize..end as usize, |row| {
-                chunk.push(row);
-                Ok::<(), ExchangeError>(())
-            });
-            made.map_err(|error| Failure::about(self.file, &error))?;
-            let took = start.elapsed();
-            self.times.add_rows(chunk.len(), took);
-            for row in &chunk {
-                self.tally.add(row);
-                write(row)?;
-            }
-            progress.add(chunk.len());
-            if took < CHUNK_TIME / 2 {
-                count = (2 * count).min(MOST_ROWS);
-            }
-            next = end;
-        }
-        Ok(())
+    /// Computes rows in all threads, and hands them on in their order, each as soon as all before it are there.
+    fn run(
+        &mut self,
+        rows: Range<u32>,
+        mut write: impl FnMut(&Row) -> Result<(), Unwritten> + Send,
+    ) -> Result<(), Unwritten> {
+        let Self { file, exchange, tally, times, quiet } = self;
+        let mut progress = Progress::new("rows", Some(rows.len()), *quiet);
+        let start = Instant::now();
+        let ended = exchange.timed_rows(rows.start as usize..rows.end as usize, |row, took| {
+            times.add_row(took);
+            tally.add(&row);
+            write(&row)?;
+            progress.add(1);
+            Ok::<(), Stopped>(())
+        });
+        times.rows_s += start.elapsed().as_secs_f64();
+        ended.map_err(|stopped| match stopped {
+            Stopped::NoRow(error) => Unwritten::Failed(Failure::about(file, &error)),
+            Stopped::Unwritten(unwritten) => unwritten,
+        })
+    }
+}
+
+/// Why there are no more rows.
+enum Stopped {
+    NoRow(ExchangeError),
+    Unwritten(Unwritten),
+}
+
+impl From<ExchangeError> for Stopped {
+    fn from(error: ExchangeError) -> Self {
+        Self::NoRow(error)
+    }
+}
+
+impl From<Unwritten> for Stopped {
+    fn from(unwritten: Unwritten) -> Self {
+        Self::Unwritten(unwritten)
     }
 }

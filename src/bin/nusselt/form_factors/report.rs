@@ -3,7 +3,7 @@
 use super::certify::Proved;
 use super::reciprocity::Defects;
 use super::tally::Tally;
-use crate::summary::{Lines, Timing, number};
+use crate::summary::{Lines, Timing, number, short};
 use nusselt::io::matrix::FORM_FACTORS_SCHEMA;
 use nusselt::scene::Scene;
 use serde::Serialize;
@@ -16,7 +16,8 @@ pub(super) struct Times {
     load_s: f64,
     prepare_s: f64,
     rows: usize,
-    rows_s: f64,
+    /// Of all rows together, by all threads.
+    pub(super) rows_s: f64,
     /// The sum over rows, and the largest: the time that a thread spent on a row.
     sum_ms: f64,
     max_ms: f64,
@@ -29,14 +30,12 @@ impl Times {
         Self { load_s, prepare_s, rows: 0, rows_s: 0.0, sum_ms: 0.0, max_ms: 0.0, write_s: 0.0 }
     }
 
-    /// Rows that were computed together.
-    pub(super) fn add_rows(&mut self, count: usize, took: Duration) {
-        let threads = rayon::current_num_threads().min(count);
-        let sum_ms = took.as_secs_f64() * 1e3 * threads as f64;
-        self.rows += count;
-        self.rows_s += took.as_secs_f64();
-        self.sum_ms += sum_ms;
-        self.max_ms = self.max_ms.max(sum_ms / count.max(1) as f64);
+    /// The time of a thread for a row.
+    pub(super) fn add_row(&mut self, took: Duration) {
+        let ms = took.as_secs_f64() * 1e3;
+        self.rows += 1;
+        self.sum_ms += ms;
+        self.max_ms = self.max_ms.max(ms);
     }
 }
 
@@ -83,7 +82,7 @@ pub(super) struct Report<'a> {
 struct RowTiming {
     #[serde(flatten)]
     timing: Timing,
-    /// To compute all rows.
+    /// To compute all rows, and to write them as they come.
     rows_s: f64,
     /// To write the final file from them.
     write_s: f64,
@@ -184,11 +183,6 @@ impl<'a> Report<'a> {
         }
         lines.0
     }
-}
-
-/// How small something is.
-fn short(x: f64) -> String {
-    if x == 0.0 { "0".to_owned() } else { format!("{x:.1e}") }
 }
 
 fn in_words(defects: &Defects) -> String {

@@ -1,5 +1,6 @@
 //! What is summed up over the rows.
 
+use super::pairs::PairSample;
 use super::reciprocity::{Defects, Reciprocity};
 use crate::args::Common;
 use crate::summary::number;
@@ -26,6 +27,8 @@ pub(super) struct Tally<'p> {
     pub(super) rows_above: usize,
     /// `None` if a back counts as its patch: nothing is reciprocal then.
     reciprocity: Option<Reciprocity<'p>>,
+    /// Pairs that are to be computed once more.
+    pub(super) sample: Option<PairSample>,
 }
 
 impl<'p> Tally<'p> {
@@ -44,6 +47,7 @@ impl<'p> Tally<'p> {
             largest_estimate: 0.0,
             rows_above: 0,
             reciprocity: (!two_sided).then(|| Reciprocity::new(patches, rows, tolerance)),
+            sample: None,
         }
     }
 
@@ -62,6 +66,9 @@ impl<'p> Tally<'p> {
     fn sum_up(&mut self, row: &Row) {
         if let Some(reciprocity) = &mut self.reciprocity {
             reciprocity.add(row);
+        }
+        if let Some(sample) = &mut self.sample {
+            sample.add(row);
         }
         self.factors += row.entries.len() as u64;
         if self.patches[row.patch as usize].area > 0.0 {
@@ -108,7 +115,8 @@ impl<'p> Tally<'p> {
             let tolerance = number(self.tolerance);
             common.warn(&format!(
                 "of {above} pairs of patches, such as {i} and {j}, reciprocity shows that a factor is off by more than \
-                 the tolerance {tolerance}; take a smaller one to have that accuracy"
+                 the tolerance {tolerance}; take a smaller one to have that accuracy (where polygons lie on each other, of which \
+                 nusselt info tells, only one of them is seen, and no tolerance helps)"
             ));
         }
     }

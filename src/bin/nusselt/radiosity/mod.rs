@@ -4,11 +4,12 @@ mod solve;
 mod stage;
 mod write;
 
-use crate::args::{Common, Loading};
+use crate::args::{Common, Loading, parse_direction};
 use crate::failure::Failure;
-use crate::input::load;
+use crate::input::load_materials;
 use crate::output::{check_once, print, print_json};
 use crate::summary::{Lines, Timing, number};
+use glam::DVec3;
 use nusselt::io::matrix::MatrixWriter;
 use nusselt::radiosity::Solver;
 use serde_json::json;
@@ -72,6 +73,9 @@ pub(crate) struct Radiosity {
     /// Show radiances times this [default: so that 95% of what reflects is at most 0.8]
     #[arg(long, value_name = "FACTOR", value_parser = parse_size, allow_hyphen_values = true)]
     exposure: Option<f64>,
+    /// What is up in .html, where it can be changed [default: 0,1,0 for glTF, which has it so, and 0,0,1 for everything else]
+    #[arg(long, value_name = "X,Y,Z", value_parser = parse_direction, allow_hyphen_values = true)]
+    up: Option<DVec3>,
     /// Write to this file; the ending decides: .glb (colours at vertices), .ply (radiosities too), .html (a page with a
     /// viewer) or .json (patches, and where the power goes). May be repeated
     #[arg(short, long, value_name = "FILE", value_parser = Output::parse)]
@@ -110,7 +114,8 @@ impl Radiosity {
         let rows = (0..=self.subdivide).filter_map(|halvings| self.rows_file(halvings));
         let rows_files = rows.flat_map(|path| MatrixWriter::files(&path)).collect::<Vec<_>>();
         check_once(files.iter().copied().chain(rows_files.iter().map(PathBuf::as_path)))?;
-        let (scene, load_s) = load(&self.scene, files.iter().copied(), &self.loading, common)?;
+        let (scene, materials, load_s) = load_materials(&self.scene, files.iter().copied(), &self.loading, common)?;
+        materials.check(&scene, common, |_| true)?;
         let start = Instant::now();
         let work = Work { asked: self, scene: &scene, quiet: common.quiet };
         let stage = work.first_stage()?;
@@ -140,7 +145,7 @@ impl Radiosity {
     ) -> Result<(), Failure> {
         let exchange = &stage.exchange;
         let start = Instant::now();
-        let surface = self.write(stage, solver)?;
+        let surface = self.write(stage, solver, common)?;
         let surface_s = start.elapsed().as_secs_f64();
         let timing = Timing::of_many(load_s, order_s, solver.state().shots, solve_s * 1e3, 0.0);
         let balance = solver.balance();
@@ -161,7 +166,7 @@ impl Radiosity {
         lines.add("patches", exchange.patches().len());
         lines.add("shots", solver.state().shots);
         lines.add("unshot", format!("{:.3e} of what is emitted", balance.unshot_fraction()));
-        let part = |power: glam::DVec3| 100.0 * power.element_sum() / balance.emitted.element_sum();
+        let part = |power: DVec3| 100.0 * power.element_sum() / balance.emitted.element_sum();
         let [absorbed, backs, background] = [balance.absorbed, balance.backs, balance.background].map(part);
         lines.add("power", format!("{absorbed:.2}% absorbed, {backs:.2}% at backs, {background:.2}% left the scene"));
         lines.add("defect", number(balance.defect()));

@@ -1,8 +1,10 @@
 //! What is written of a solution.
 
 use super::{Radiosity, Stage};
+use crate::args::Common;
 use crate::failure::Failure;
 use crate::output::write_file;
+use crate::progress::SharedProgress;
 use glam::DVec3;
 use nusselt::io::gltf::write_glb;
 use nusselt::io::radiosity::{
@@ -10,7 +12,7 @@ use nusselt::io::radiosity::{
 };
 use nusselt::radiosity::{Gather, Solver, Surface, SurfaceOptions};
 use nusselt::scene::{PolygonId, Scene};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Format {
@@ -42,7 +44,12 @@ impl Output {
 
 impl Radiosity {
     /// Writes all files; gives the surface, if there was one to make.
-    pub(super) fn write(&self, stage: &Stage, solver: &Solver<'_>) -> Result<Option<Surface>, Failure> {
+    pub(super) fn write(
+        &self,
+        stage: &Stage,
+        solver: &Solver<'_>,
+        common: &Common,
+    ) -> Result<Option<Surface>, Failure> {
         let Stage { patches, of, regions, exchange, .. } = stage;
         let ambient = self.ambient.then(|| solver.ambient());
         for output in self.output.iter().filter(|output| output.format == Format::Json) {
@@ -59,21 +66,31 @@ impl Radiosity {
         let shown = shown.as_deref().unwrap_or(solver.radiosity());
         let gather = Gather::new(exchange, solver.emission(), solver.reflectance(), shown);
         let options = SurfaceOptions { detail: self.detail, depth: self.depth, ..SurfaceOptions::default() };
-        let surface = Surface::new(patches, regions, &gather, &options).map_err(|error| self.about(&error))?;
+        let views = SharedProgress::new("views from corners", None, common.quiet);
+        let surface = Surface::watched(patches, regions, &gather, &options, &|count| views.add(count))
+            .map_err(|error| self.about(&error))?;
+        drop(views);
         let exposure = self.exposure.unwrap_or_else(|| auto_exposure(&surface, solver.emission()));
         for Output { path, format } in &self.output {
             match format {
                 Format::Glb => write_file(path, |out| write_glb(out, &radiosity_meshes(&surface, patches, exposure)))?,
                 Format::Ply => write_file(path, |out| write_radiosity_ply(&surface, exposure, out))?,
                 Format::Html => {
+                    let up = self.up.unwrap_or_else(|| usual_up(&self.scene));
                     let title = self.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                    write_file(path, |out| write_radiosity_html(&surface, &title, exposure, out))?;
+                    write_file(path, |out| write_radiosity_html(&surface, &title, exposure, up, out))?;
                 }
                 Format::Json => {}
             }
         }
         Ok(Some(surface))
     }
+}
+
+/// What is up in scenes of a file's format: y in glTF, which says so; elsewhere z, as for cameras.
+fn usual_up(file: &Path) -> DVec3 {
+    let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if matches!(&*ending, "gltf" | "glb") { DVec3::Y } else { DVec3::Z }
 }
 
 /// The mean of the corners of a polygon, or the origin if it has none.

@@ -5,8 +5,9 @@ mod report;
 use crate::args::{Common, Loading, Order, Way, parse_direction, parse_number, parse_point, parse_surface};
 use crate::brdf::{BrdfSpec, GRAMMAR};
 use crate::failure::Failure;
-use crate::input::{build_order, check_way, load, way};
+use crate::input::{build_order, check_way, load_materials, way};
 use crate::lighting::Lights;
+use crate::materials::Numbered;
 use crate::output::{print, print_json, write_file};
 use crate::place::{hemisphere, on_polygon};
 use crate::summary::Timing;
@@ -105,18 +106,16 @@ impl Reflect {
         check_way(self.way, &self.order)?;
         let lighting = self.lights.lighting(self.two_sided)?;
         let outputs = self.output.iter().map(PathBuf::as_path);
-        let (scene, load_s) = load(&self.scene, outputs, &self.loading, common)?;
+        let (scene, materials, load_s) = load_materials(&self.scene, outputs, &self.loading, common)?;
         let (viewpoint, domain) = match (self.on, self.normal) {
             (Some((polygon, side)), _) => (on_polygon(&self.scene, &scene, polygon, side, self.eye)?, Domain::Above),
             (None, normal) => hemisphere(&scene, self.eye, normal.unwrap_or_default(), self.free)
                 .map_err(|error| Failure::about(&self.scene, &error))?,
         };
-        let material = viewpoint.surface().map(|(polygon, _)| scene.polygon(polygon).material());
-        let brdf = self.brdf.brdf(material, &self.scene)?;
-        if let Some(material) = material.filter(|material| self.brdf.has_material() && material.reflects_too_much()) {
-            let what = "Kd and Ks sum to more than 1 in some colour; there both are divided by their sum";
-            common.warn(&format!("{}: material {:?}: {what}", self.scene.display(), material.name));
-        }
+        let number = viewpoint.surface().map(|(polygon, _)| scene.polygon(polygon).material_id().index());
+        let own = number.filter(|_| self.brdf.has_material()).map(|number| &scene.materials()[number]);
+        materials.check(&scene, common, |material| own.is_some_and(|own| std::ptr::eq(own, material)))?;
+        let brdf = self.brdf.brdf(number.map(|number| Numbered { materials: &materials, scene: &scene, number }))?;
         let (order, order_s) = build_order(&self.scene, &scene, &self.order, way(self.way, &self.order))?;
         let start = Instant::now();
         let image = order.view(&viewpoint, &domain).map_err(|error| Failure::about(&self.scene, &error))?;

@@ -2,7 +2,7 @@
 
 use crate::args::Common;
 use crate::failure::Failure;
-use crate::progress::Progress;
+use crate::progress::{Progress, SharedProgress};
 use crate::radiosity::{parse_fraction, parse_size};
 use nusselt::factors::{Exchange, ExchangeOptions, PatchMesh};
 use nusselt::radiosity::{RadiosityError, Solver, SolverOptions, SurfaceOptions};
@@ -17,7 +17,7 @@ pub(super) struct Interreflection {
     /// Show light straight from lamps, sky and lights alone; without it surfaces light each other too, by the radiosity of what polygons
     /// emit
     #[arg(long, conflicts_with_all = ["gather", "patch", "until", "tolerance", "detail", "depth"])]
-    direct: bool,
+    pub(super) direct: bool,
     /// Gather interreflected light at every point from all patches that it sees, instead of interpolating it between
     /// corners of a mesh; slower. Hemicubes and rays always do
     #[arg(long)]
@@ -98,7 +98,10 @@ impl Interreflection {
             Indirect::new(&patches, &mesh.polygons(), count, solver.emission(), solver.radiosity()).with_hosts(hosts);
         if !self.gather && shading == Shading::Contour {
             let options = SurfaceOptions { detail: self.detail, depth: self.depth, ..SurfaceOptions::default() };
-            indirect = indirect.interpolated(&exchange, &mesh.regions(), &options).map_err(|error| failed(&error))?;
+            let views = SharedProgress::new("views from corners", None, common.quiet);
+            indirect = indirect
+                .interpolated_watched(&exchange, &mesh.regions(), &options, &|count| views.add(count))
+                .map_err(|error| failed(&error))?;
         }
         let solved = Solved {
             patches: patches.polygon_count(),

@@ -7,23 +7,25 @@ mod path;
 use crate::args::{Common, Loading, parse_direction, parse_fov, parse_point};
 use crate::brdf::{BrdfSpec, GRAMMAR};
 use crate::failure::Failure;
-use crate::input::{build_order, load};
+use crate::input::{build_order, load_materials};
 use crate::lighting::Lights;
-use crate::output::{print, print_json};
-use crate::progress::Progress;
+use crate::materials::{Materials, Numbered};
+use crate::output::{Unwritten, print, print_json, write_results};
+use crate::progress::SharedProgress;
 use crate::radiosity::parse_size;
 use crate::summary::{Lines, Timing, number};
 use glam::{DVec3, UVec2};
 use indirect::{Interreflection, Solved};
-use nusselt::brdf::{Brdf, Light};
+use nusselt::brdf::{Brdf, Light, ReflectError};
 use nusselt::contour::SceneOrder;
-use nusselt::render::{RenderError, Rendered, Shader, ShaderOptions, Shading, render};
-use nusselt::scene::Scene;
+use nusselt::io::write_png_rows;
+use nusselt::render::{Band, RenderError, Rendered, Shader, ShaderOptions, Shading, render, render_bands};
+use nusselt::scene::{Material, Scene};
 use outputs::Output;
 use path::Camera;
 use serde_json::json;
+use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 const EXAMPLES: &str = "\
@@ -60,7 +62,8 @@ pub(crate) struct Render {
     /// by commas or blanks. -o x.png writes `x_0001.png` and on, all with one exposure
     #[arg(long, value_name = "PATH.csv")]
     frames: Option<PathBuf>,
-    /// The picture's width and height in pixels
+    /// The picture's width and height in pixels; of more than 33554432 pixels, which are not kept in memory, with --exposure
+    /// and one -o x.png
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = parse_pixels)]
     size: UVec2,
     /// Write to this file; the ending decides: .png (sRGB, after the exposure) or .exr (radiances; needs the feature
@@ -104,6 +107,27 @@ fn parse_pixels(text: &str) -> Result<UVec2, String> {
     }
 }
 
+/// A picture of more pixels than this is written as it is made.
+const MOST_KEPT: u64 = 1 << 25;
+
+/// Why a picture was not written to the end.
+enum Unmade {
+    Io(io::Error),
+    Render(RenderError),
+}
+
+impl From<io::Error> for Unmade {
+    fn from(error: io::Error) -> Self {
+        Self::Io(error)
+    }
+}
+
+impl From<RenderError> for Unmade {
+    fn from(error: RenderError) -> Self {
+        Self::Render(error)
+    }
+}
+
 /// 2^28 pixels are the most of a picture.
 const MOST_SIDE: u32 = 16_384;
 
@@ -133,18 +157,19 @@ fn parse_brdf(text: &str) -> Result<(String, BrdfSpec), String> {
 
 impl Render {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
+        self.check_memory()?;
         let lighting = self.lights.lighting(self.two_sided)?;
         let cameras = self.cameras()?;
         let files = outputs::files(&self.output, self.frames.as_deref(), cameras.len())?;
-        let (scene, load_s) = load(&self.scene, files.iter().map(PathBuf::as_path), &self.loading, common)?;
-        let is_dark = !scene.materials().iter().any(nusselt::scene::Material::is_emitter)
-            && lighting.sky.is_none()
-            && lighting.lights.is_empty();
+        let (scene, materials, load_s) =
+            load_materials(&self.scene, files.iter().map(PathBuf::as_path), &self.loading, common)?;
+        let is_dark =
+            !scene.materials().iter().any(Material::is_emitter) && lighting.sky.is_none() && lighting.lights.is_empty();
         if is_dark {
             let advice = "give it --sky, --point-light or --directional-light";
             common.warn(&format!("{}: nothing emits light, so the picture is black; {advice}", self.scene.display()));
         }
-        let brdfs = self.brdfs(&scene, common)?;
+        let brdfs = self.brdfs(&scene, &materials, common)?;
         let (order, order_s) = self.order(&scene)?;
         let options = ShaderOptions { shading: self.shading, mirrors: self.mirrors, ..ShaderOptions::default() };
         let shader = Shader::with_brdfs(order, brdfs, lighting, options).map_err(|error| self.refused(&error))?;
@@ -152,9 +177,14 @@ impl Render {
         let mut exposure = self.exposure;
         let (mut frame_ms, mut points) = (Vec::new(), 0);
         let pixels = (self.size.x as usize * self.size.y as usize).saturating_mul(cameras.len());
-        let progress = Mutex::new(Progress::new("pixels", Some(pixels), common.quiet));
+        let progress = SharedProgress::new("pixels", Some(pixels), common.quiet);
         for (k, camera) in cameras.iter().enumerate() {
             let start = Instant::now();
+            if let Some(exposure) = exposure.filter(|_| self.is_large()) {
+                points += self.render_into(&files[k], exposure, &shader, camera, &progress)?;
+                frame_ms.push(start.elapsed().as_secs_f64() * 1e3);
+                continue;
+            }
             let rendered = self.render(&shader, camera, &progress)?;
             frame_ms.push(start.elapsed().as_secs_f64() * 1e3);
             points += rendered.points;
@@ -166,6 +196,23 @@ impl Render {
         drop(progress);
         let timing = Timing::new(load_s, order_s, &frame_ms);
         self.tell(common, &files, &frame_ms, points, exposure.unwrap_or(1.0), &solved, timing)
+    }
+
+    /// True if pictures are not kept, but written as they are made.
+    fn is_large(&self) -> bool {
+        u64::from(self.size.x) * u64::from(self.size.y) > MOST_KEPT
+    }
+
+    /// Refuses pictures that would have to be kept and are too large for that.
+    fn check_memory(&self) -> Result<(), Failure> {
+        let is_streamed = self.exposure.is_some() && self.output.len() == 1 && self.output.iter().all(Output::is_png);
+        if !self.is_large() || is_streamed {
+            return Ok(());
+        }
+        let gigabytes = f64::from(self.size.x) * f64::from(self.size.y) * 40.0 / 1e9;
+        Err(Failure::Usage(format!(
+            "--size: so large a picture would take {gigabytes:.1} GB to keep; of more than {MOST_KEPT} pixels it is written as it is made, which takes an --exposure (that of a smaller one will do) and one -o x.png"
+        )))
     }
 
     fn cameras(&self) -> Result<Vec<Camera>, Failure> {
@@ -183,7 +230,7 @@ impl Render {
     }
 
     /// The BRDF of each material.
-    fn brdfs(&self, scene: &Scene, common: &Common) -> Result<Vec<Box<dyn Brdf>>, Failure> {
+    fn brdfs(&self, scene: &Scene, places: &Materials, common: &Common) -> Result<Vec<Box<dyn Brdf>>, Failure> {
         let materials = scene.materials();
         for (name, _) in &self.brdf {
             if !materials.iter().any(|material| material.name == *name) {
@@ -192,31 +239,54 @@ impl Render {
                 return Err(Failure::Usage(format!("--brdf: there is no material {name:?}; there are {known}")));
             }
         }
-        let brdf = |material: &nusselt::scene::Material| {
-            let given = self.brdf.iter().rev().find(|(name, _)| *name == material.name);
-            if let Some((_, spec)) = given {
-                return spec.brdf(Some(material), &self.scene);
-            }
-            if material.reflects_too_much() {
-                let what = "Kd and Ks sum to more than 1 in some colour; there both are divided by their sum";
-                common.warn(&format!("{}: material {:?}: {what}", self.scene.display(), material.name));
-            }
-            material
-                .brdf()
-                .map_err(|error| Failure::about(&self.scene, &format_args!("material {:?}: {error}", material.name)))
+        let given = |material: &Material| {
+            let named = self.brdf.iter().rev().find(|(name, _)| *name == material.name);
+            named.map(|(_, spec)| spec)
         };
-        materials.iter().map(brdf).collect()
+        // Interreflection goes by what materials say, whatever they are given.
+        let matters =
+            |material: &Material| !self.interreflection.direct || given(material).is_none_or(BrdfSpec::has_material);
+        places.check(scene, common, matters)?;
+        let brdf = |(number, material): (usize, &Material)| {
+            let numbered = Numbered { materials: places, scene, number };
+            given(material).map_or_else(|| numbered.brdf(), |spec| spec.brdf(Some(numbered)))
+        };
+        materials.iter().enumerate().map(brdf).collect()
     }
 
-    fn render(&self, shader: &Shader, camera: &Camera, progress: &Mutex<Progress>) -> Result<Rendered, Failure> {
-        let done = |count| progress.lock().unwrap_or_else(PoisonError::into_inner).add(count);
-        render(shader, camera.eye, &camera.frustum, self.size, &done)
+    fn render(&self, shader: &Shader, camera: &Camera, progress: &SharedProgress) -> Result<Rendered, Failure> {
+        render(shader, camera.eye, &camera.frustum, self.size, &|count| progress.add(count))
             .map_err(|error| camera.place(self.refused(&error)))
+    }
+
+    /// Writes a picture as it is made; gives how many points were shaded.
+    fn render_into(
+        &self,
+        file: &Path,
+        exposure: f64,
+        shader: &Shader,
+        camera: &Camera,
+        progress: &SharedProgress,
+    ) -> Result<usize, Failure> {
+        let mut points = 0;
+        write_results(file, |out| {
+            write_png_rows(self.size, exposure, out, |rows| {
+                let done = |count| progress.add(count);
+                let take = |band: Band| Ok(rows.write(&band.radiances)?);
+                let result = render_bands(shader, camera.eye, &camera.frustum, self.size, &done, take);
+                points = result.map_err(|error| match error {
+                    Unmade::Io(error) => Unwritten::Io(error),
+                    Unmade::Render(error) => camera.place(self.refused(&error)).into(),
+                })?;
+                Ok(())
+            })
+        })?;
+        Ok(points)
     }
 
     fn refused(&self, error: &RenderError) -> Failure {
         match error {
-            RenderError::Reflect { source: nusselt::brdf::ReflectError::BadLight(light), .. } => {
+            RenderError::Light(ReflectError::BadLight(light)) => {
                 let option = if matches!(light, Light::Point { .. }) { "--point-light" } else { "--directional-light" };
                 Failure::Usage(format!("{option}: {error}"))
             }

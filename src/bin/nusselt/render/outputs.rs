@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::output::{check_once, is_same_file, write_file};
-use nusselt::io::write_png;
+use nusselt::io::write_png_rows;
 use nusselt::picture::Picture;
 use std::path::{Path, PathBuf};
 
@@ -35,13 +35,16 @@ impl Output {
         Ok(Self { path, format })
     }
 
+    pub(super) fn is_png(&self) -> bool {
+        self.format == Format::Png
+    }
+
     /// Writes one picture.
     pub(super) fn write(&self, file: &Path, picture: &Picture, exposure: f64) -> Result<(), Failure> {
         match self.format {
-            Format::Png => {
-                let exposed = picture.times(exposure);
-                write_file(file, |out| write_png(&exposed, out))
-            }
+            Format::Png => write_file(file, |out| {
+                write_png_rows(picture.size(), exposure, out, |rows| rows.write(picture.pixels()))
+            }),
             #[cfg(feature = "exr")]
             Format::Exr => write_file(file, |out| nusselt::io::write_exr(picture, out)),
             #[cfg(not(feature = "exr"))]
