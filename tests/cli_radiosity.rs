@@ -98,6 +98,8 @@ fn a_kept_state_is_gone_on_from() {
     for (change, what) in [
         ("radiosity box.obj --patch 200 --tolerance 1e-2", "other patches"),
         ("radiosity box.obj --patch 300 --tolerance 1e-3", "another tolerance"),
+        ("radiosity box.obj --patch 300 --tolerance 1e-2 --overshoot", "another --overshoot"),
+        ("radiosity box.obj --patch 300 --tolerance 1e-2 --subdivide 1", "another --subdivide"),
     ] {
         let error = folder.run(&format!("{change} --state a.state --resume"), 1);
         assert!(error.contains(what), "{error}");
@@ -105,6 +107,94 @@ fn a_kept_state_is_gone_on_from() {
     folder.write("a.state", "{\"schema\":");
     let error = folder.run(&format!("{line} --state a.state --resume"), 1);
     assert!(error.contains("a.state") && error.contains("start anew"), "{error}");
+}
+
+#[test]
+fn halved_patches_are_gone_on_from_and_keep_all_power() {
+    let folder = Folder::new("radiosity-subdivide");
+    let line = "radiosity box.obj --patch 300 --tolerance 1e-2 --until 0.1 --gradient 0.4";
+    let plain = folder.parsed(&format!("{line} --subdivide 0 -o a.json --json"));
+    let halved = folder.parsed(&format!("{line} --subdivide 2 -o b.json -o b.ply --depth 0 --json"));
+    let patches = |summary: &Value| summary["patches"].as_u64().expect("a count");
+    assert!(patches(&halved) > patches(&plain) && patches(&halved) < 16 * patches(&plain));
+    assert!(number(&halved["defect"]) < 1e-12 && number(&halved["unshot"]) <= 0.1, "{halved}");
+    // Once, kept, and once more: the same as twice.
+    folder.run(&format!("{line} --subdivide 1 --state a.state"), 0);
+    folder.run(&format!("{line} --subdivide 2 --state a.state --resume -o c.json"), 0);
+    assert_eq!(folder.read("b.json"), folder.read("c.json"));
+    // Less often cannot be had from it, nor with another gradient.
+    let error = folder.run(&format!("{line} --subdivide 1 --state a.state --resume"), 1);
+    assert!(error.contains("--subdivide 2"), "{error}");
+    let other = line.replace("0.4", "0.3");
+    let error = folder.run(&format!("{other} --subdivide 2 --state a.state --resume"), 1);
+    assert!(error.contains("--gradient"), "{error}");
+}
+
+#[test]
+fn the_whole_matrix_is_gone_on_with() {
+    use nusselt::factors::{Exchange, ExchangeOptions, PatchMesh};
+    use nusselt::io::matrix::{MatrixJob, MatrixWriter};
+    let folder = Folder::new("radiosity-full");
+    let line = "radiosity box.obj --patch 300 --tolerance 1e-2 --full";
+    folder.run(&format!("{line} -o a.json"), 0);
+    folder.run(&format!("{line} --state b.state -o b.json"), 0);
+    assert_eq!(folder.read("a.json"), folder.read("b.json"));
+    let partial = "c.state.0.rows.partial";
+    // As an interrupted run leaves it, and with a row that is wrong, so that one sees that rows are taken from there.
+    let scene =
+        nusselt::io::read_scene(&folder.path("box.obj"), &nusselt::io::ReadOptions::default()).expect("a scene").scene;
+    let mesh = PatchMesh::new(&scene, 300.0).expect("a mesh");
+    let patches = mesh.patches().expect("a scene");
+    let options = ExchangeOptions { tolerance: 1e-2, ..ExchangeOptions::default() };
+    let exchange = Exchange::of_mesh(&mesh, options).expect("patches");
+    for is_wrong in [false, true] {
+        let job = MatrixJob::new(&patches, exchange.patches()).with_option("--tolerance", 1e-2);
+        let mut writer = MatrixWriter::create(&folder.path("c.state.0.rows"), &job).expect("a file");
+        for patch in 0..9 {
+            let mut row = exchange.row(patch).expect("a row");
+            if is_wrong && patch == 5 {
+                row.entries.clear();
+                (row.backs.factor, row.background.factor) = (0.0, 1.0);
+            }
+            writer.row(&row).expect("written");
+        }
+        drop(writer);
+        assert!(folder.path(partial).exists());
+        folder.run(&format!("{line} --state c.state --resume -o c.json"), 0);
+        assert_eq!(folder.read("a.json") != folder.read("c.json"), is_wrong);
+        assert!(!folder.path(partial).exists(), "it is solved");
+        std::fs::remove_file(folder.path("c.state")).expect("the solution");
+    }
+    // Rows of other patches are no use.
+    let job = MatrixJob::new(&patches, exchange.patches()).with_option("--tolerance", 1e-3);
+    drop(MatrixWriter::create(&folder.path("c.state.0.rows"), &job).expect("a file"));
+    let error = folder.run(&format!("{line} --state c.state --resume"), 1);
+    assert!(error.contains("c.state.0.rows") && error.contains("--tolerance"), "{error}");
+    // Without --resume it starts anew.
+    folder.run(&format!("{line} --state c.state -o c.json"), 0);
+    assert_eq!(folder.read("a.json"), folder.read("c.json"));
+}
+
+#[test]
+fn the_ambient_term_is_shown_and_not_counted() {
+    let folder = Folder::new("radiosity-ambient");
+    let line = "radiosity box.obj --patch 300 --tolerance 1e-2 --until 0.5 --depth 0 --exposure 1";
+    folder.run(&format!("{line} -o a.json -o a.ply"), 0);
+    folder.run(&format!("{line} --ambient -o b.json -o b.ply"), 0);
+    let [plain, ambient]: [Value; 2] =
+        ["a.json", "b.json"].map(|file| serde_json::from_str(&folder.read(file)).expect("JSON"));
+    assert_eq!(plain["balance"], ambient["balance"]);
+    let rows = |table: &Value| table["patches"].as_array().expect("rows").clone();
+    for (a, b) in rows(&plain).iter().zip(&rows(&ambient)) {
+        assert_eq!(a["radiosity"], b["radiosity"]);
+        assert!(a.get("ambient").is_none());
+        // All that reflects gets some.
+        assert_eq!(number(&b["ambient"][0]) > 0.0, number(&b["reflectance"][0]) > 0.0);
+    }
+    assert_ne!(
+        std::fs::read(folder.path("a.ply")).expect("a file"),
+        std::fs::read(folder.path("b.ply")).expect("a file")
+    );
 }
 
 #[test]

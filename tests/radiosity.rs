@@ -1,11 +1,13 @@
 //! Radiosity: energy is conserved, furnaces are even, and results do not depend on threads or interruptions.
 
 use glam::DVec3;
-use nusselt::contour::SceneOrder;
-use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, mesh_scene};
-use nusselt::radiosity::{Gather, RadiosityError, Solver, SolverOptions, SolverState, Surface, SurfaceOptions};
+use nusselt::factors::{Exchange, ExchangeOptions, PatchMesh, PatchPlan, RowsOnce, mesh_scene};
+use nusselt::radiosity::{
+    Gather, RadiosityError, Solver, SolverOptions, SolverState, Surface, SurfaceOptions, uneven_patches,
+};
 use nusselt::samples::{Kind, cornell_box, generate};
-use nusselt::scene::{Material, MetallicRoughness, PolygonId, Scene};
+use nusselt::scene::{Material, MetallicRoughness, PolygonId, PolygonRef, Scene};
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
 fn material(diffuse: f64, emission: f64) -> Material {
@@ -45,18 +47,15 @@ fn a_furnace_is_even() {
     let bound = tolerance * area / least / (1.0 - reflectance);
     assert!(solver.radiosity().iter().all(|b| (b.x / expected - 1.0).abs() < bound), "{:?}", solver.radiosity());
     // What is gathered at a point is a mean of those with weights that sum to 1.
-    let gather = Gather::new(SceneOrder::new(&patches), solver.emission(), solver.reflectance(), solver.radiosity());
+    let gather = Gather::new(&exchange, solver.emission(), solver.reflectance(), solver.radiosity());
     for (polygon, near) in [(0, DVec3::new(0.7, 0.9, 0.0)), (30, DVec3::new(1e-6, 0.3, 1.0)), (50, DVec3::ONE)] {
         let found = gather.at(PolygonId(polygon), near).expect("a view").x;
         assert!((found / expected - 1.0).abs() < bound, "{found} {expected}");
     }
 }
 
-/// In a furnace too, what is covered by a block has no light to show beside it.
-#[test]
-fn what_stands_on_a_floor_does_not_darken_it() {
-    let (reflectance, emission) = (0.5, 1.0);
-    let even = material(reflectance, emission);
+/// A furnace with a block that stands on its floor.
+fn furnace_with_block(even: &Material) -> Scene {
     let corner = |k: usize| [0, 1, 2].map(|axis| [[0.5, 1.0, 0.0][axis], [1.0, 1.5, 0.5][axis]][k >> axis & 1]);
     let block: Vec<[f64; 3]> = (0..8).map(corner).collect();
     let faces = [[0, 2, 3, 1], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5], [4, 5, 7, 6]];
@@ -64,46 +63,257 @@ fn what_stands_on_a_floor_does_not_darken_it() {
     let vertices: Vec<[f64; 3]> = room.vertices().iter().map(DVec3::to_array).collect();
     let rings = room.polygons().map(|polygon| polygon.rings()[0].iter().map(|v| v.index()).collect());
     let builder = Scene::builder().mesh(&vertices, &rings.collect::<Vec<_>>(), even.clone());
-    let scene = builder.mesh(&block, &faces.map(|face| face.to_vec()), even).build().expect("a scene");
-    // The block stands on whole patches.
-    let (patches, of) = mesh_scene(&scene, 0.5).expect("a mesh");
-    let tolerance = 1e-6;
-    let exchange = exchange(&patches, tolerance);
-    let mut solver = Solver::new(&patches, &exchange, SolverOptions::default()).expect("a solver");
-    solver.solve(1e-10, |_| true).expect("solved");
-    let gather = Gather::new(SceneOrder::new(&patches), solver.emission(), solver.reflectance(), solver.radiosity());
-    let under = DVec3::new(0.75, 1.2, 0.0);
-    let covered = of.iter().zip(patches.polygons()).find(|(_, patch)| {
-        let ring: Vec<DVec3> = patch.rings()[0].iter().map(|&v| patches.vertex(v)).collect();
-        ring.iter().all(|p| p.z == 0.0 && (p - under).abs().max_element() < 0.4)
-    });
-    let covered = covered.expect("a patch under the block").1.id();
-    assert!((gather.at(covered, under).expect("a view").x - PI * emission).abs() < 1e-12, "it emits into the block");
-    let surface = Surface::new(&patches, &of, &gather, &SurfaceOptions::default()).expect("a surface");
-    let expected = PI * emission / (1.0 - reflectance);
-    // As in the furnace above, with 30 square units in patches of a quarter or less.
-    let bound = tolerance * 30.0 / 0.1 / (1.0 - reflectance);
-    assert!(surface.positions.iter().any(|&p| p.distance(DVec3::new(0.5, 1.0, 0.0)) < 1e-12), "a foot of the block");
-    for (position, radiosity) in surface.positions.iter().zip(&surface.radiosity) {
-        let is_bottom = position.z == 0.0 && (position - under).abs().max_element() < 0.31;
-        assert!((radiosity.x / expected - 1.0).abs() < bound || is_bottom, "{radiosity} at {position}");
-    }
-    // The floor below the block has what it emits into it: seen from inside, nothing of what is outside.
-    let mut below = 0;
-    for (triangle, &patch) in surface.triangles.iter().zip(&surface.patches) {
-        if of[patch.index()] == PolygonId(0) {
-            below += usize::from(patch == covered);
-            let (expected, bound) = if patch == covered { (PI * emission, 1e-12) } else { (expected, bound) };
+    builder.mesh(&block, &faces.map(|face| face.to_vec()), even.clone()).build().expect("a scene")
+}
+
+/// In a furnace too, what is covered by a block has no light to show beside it, whether the block stands on whole patches or not.
+#[test]
+fn what_stands_on_a_floor_does_not_darken_it() {
+    let (reflectance, emission) = (0.5, 1.0);
+    let scene = furnace_with_block(&material(reflectance, emission));
+    let under = DVec3::new(0.75, 1.25, 0.0);
+    let is_bottom = |p: DVec3| p.z.abs() < 1e-9 && (p - under).abs().max_element() < 0.25 + 1e-9;
+    for longest in [0.5, 0.8] {
+        let mesh = PatchMesh::new(&scene, longest).expect("a mesh");
+        let patches = mesh.patches().expect("a scene");
+        let tolerance = 1e-6;
+        let options = ExchangeOptions { tolerance, ..ExchangeOptions::default() };
+        let exchange = Exchange::of_mesh(&mesh, options).expect("patches");
+        let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+        solver.solve(1e-10, |_| true).expect("solved");
+        assert!(solver.balance().defect() < 1e-9);
+        let rings: Vec<Vec<DVec3>> =
+            patches.polygons().map(|patch| patch.rings()[0].iter().map(|&v| patches.vertex(v)).collect()).collect();
+        let is_covered = |patch: PolygonId| rings[patch.index()].iter().all(|&p| is_bottom(p));
+        let expected = PI * emission / (1.0 - reflectance);
+        // As in the furnace above, with 31 square units; cuts make smaller patches than a quarter of the square of the edge.
+        let least = exchange.patches().iter().map(|patch| patch.area).fold(f64::INFINITY, f64::min);
+        let bound = tolerance * 31.0 / least / (1.0 - reflectance);
+        assert!(bound < 1e-2, "{least}");
+        let mut free = 0.0;
+        for (patch, radiosity) in patches.polygons().zip(solver.radiosity()) {
+            if is_covered(patch.id()) {
+                // The bottom of the block sees nothing, and what it stands on sees the bottom at no distance.
+                continue;
+            }
+            assert!(
+                (radiosity.x / expected - 1.0).abs() < bound,
+                "{longest}: {radiosity} of {:?}",
+                rings[patch.id().index()]
+            );
+            free += exchange.patches()[patch.id().index()].area;
+        }
+        assert!((free - (27.0 + 1.0)).abs() < 1e-9, "all but the bottom and what is below it: {free}");
+        let gather = Gather::new(&exchange, solver.emission(), solver.reflectance(), solver.radiosity());
+        let covered = patches
+            .polygons()
+            .map(PolygonRef::id)
+            .find(|&patch| is_covered(patch) && mesh.polygon(patch.index()).0 == 0);
+        let covered = covered.expect("a patch under the block");
+        let at = rings[covered.index()].iter().sum::<DVec3>() / rings[covered.index()].len() as f64;
+        assert!((gather.at(covered, at).expect("a view").x - PI * emission).abs() < 1e-12, "it emits into the block");
+        let surface = Surface::new(&patches, &mesh.regions(), &gather, &SurfaceOptions::default()).expect("a surface");
+        assert!(surface.positions.iter().any(|&p| p.distance(DVec3::new(0.5, 1.0, 0.0)) < 1e-3), "a foot of the block");
+        let mut below = 0;
+        for (triangle, &patch) in surface.triangles.iter().zip(&surface.patches) {
+            // The floor below the block has what it emits into it: seen from inside, nothing of what is outside.
+            let is_below = is_covered(patch) && mesh.polygon(patch.index()).0 == 0;
+            if is_covered(patch) && !is_below {
+                continue;
+            }
+            below += usize::from(is_below);
+            let (expected, bound) = if is_below { (PI * emission, 1e-12) } else { (expected, bound) };
             for corner in triangle {
-                let (at, found) = (surface.positions[*corner as usize], surface.radiosity[*corner as usize]);
-                assert!((found.x / expected - 1.0).abs() < bound, "{found} at {at}");
+                let (radiosity, position) = (surface.radiosity[*corner as usize], surface.positions[*corner as usize]);
+                assert!((radiosity.x / expected - 1.0).abs() < bound, "{longest}: {radiosity} at {position}");
             }
         }
+        assert!(below >= 2);
+        // No corner is left over.
+        let used: std::collections::HashSet<&u32> = surface.triangles.iter().flatten().collect();
+        assert_eq!(used.len(), surface.positions.len());
     }
-    assert!(below >= 2);
-    // No corner is left over.
-    let used: std::collections::HashSet<&u32> = surface.triangles.iter().flatten().collect();
-    assert_eq!(used.len(), surface.positions.len());
+}
+
+/// A closed room of 4 x 3 x 2.5 with a small lamp below its ceiling and a table in it.
+fn room_with_table() -> Scene {
+    let cuboid = |low: [f64; 3], high: [f64; 3]| -> Vec<[f64; 3]> {
+        (0..8).map(|k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] })).collect()
+    };
+    let inwards = [[0, 1, 3, 2], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3], [4, 6, 7, 5]];
+    let outwards = inwards.map(|face| [face[3], face[2], face[1], face[0]].to_vec());
+    let builder = Scene::builder().mesh(
+        &cuboid([0.0; 3], [4.0, 3.0, 2.5]),
+        &inwards.map(|face| face.to_vec()),
+        material(0.6, 0.0),
+    );
+    let builder = builder.mesh(&cuboid([1.1, 0.7, 0.6], [2.7, 1.6, 0.7]), &outwards, material(0.5, 0.0));
+    let lamp = [[1.3, 1.9, 2.4], [1.9, 1.9, 2.4], [1.9, 2.4, 2.4], [1.3, 2.4, 2.4]];
+    builder.mesh(&lamp, &[vec![3, 2, 1, 0]], material(0.0, 5.0)).build().expect("a scene")
+}
+
+struct Solved {
+    mesh: PatchMesh,
+    radiosity: Vec<DVec3>,
+    shots: usize,
+}
+
+/// Solved in patches of that length, and again with uneven ones halved, some times.
+fn subdivided(scene: &Scene, longest: f64, gradient: f64, times: usize) -> Solved {
+    let mut mesh = PatchMesh::new(scene, longest).expect("a mesh");
+    let mut guess = Vec::new();
+    let options = ExchangeOptions { tolerance: 1e-3, ..ExchangeOptions::default() };
+    for time in 0..=times {
+        let exchange = Exchange::of_mesh(&mesh, options).expect("patches");
+        let mut solver = Solver::new(scene, &exchange, SolverOptions::default()).expect("a solver");
+        solver.start_from(guess).or_else(|_| solver.start_from(Vec::new())).expect("started");
+        solver.solve(1e-4, |_| true).expect("solved");
+        let balance = solver.balance();
+        // Rounding of some thousands of shots.
+        assert!(balance.defect() < 1e-11, "{balance:?}");
+        let radiosity = solver.radiosity().to_vec();
+        if time == times {
+            return Solved { mesh, radiosity, shots: solver.state().shots };
+        }
+        let patches = mesh.patches().expect("a scene");
+        let gather = Gather::new(&exchange, solver.emission(), solver.reflectance(), solver.radiosity());
+        let uneven = uneven_patches(&patches, &mesh.regions(), &gather, gradient).expect("views");
+        let (finer, parents) = mesh.halved(|patch| uneven[patch]);
+        guess = parents.iter().map(|&parent| radiosity[parent]).collect();
+        mesh = finer;
+    }
+    unreachable!()
+}
+
+/// The root of the mean square of differences to a finer solution, by area, over the root of its mean square; of what reflects.
+fn difference(scene: &Scene, coarse: &Solved, fine: &Solved) -> f64 {
+    let rings = |solved: &Solved| -> Vec<Vec<DVec3>> {
+        let patches = solved.mesh.patches().expect("a scene");
+        patches.polygons().map(|patch| patch.rings()[0].iter().map(|&v| patches.vertex(v)).collect()).collect()
+    };
+    let (own, its) = (rings(coarse), rings(fine));
+    let mut of_polygon: HashMap<PolygonId, Vec<usize>> = HashMap::new();
+    (0..own.len()).for_each(|patch| of_polygon.entry(coarse.mesh.polygon(patch)).or_default().push(patch));
+    // How far a point of its plane is outside of a convex ring, as a part of its sides.
+    let outside = |ring: &[DVec3], p: DVec3| {
+        let normal = (ring[1] - ring[0]).cross(ring[2] - ring[0]).normalize();
+        let sides = ring.iter().zip(ring.iter().cycle().skip(1));
+        sides.map(|(&a, &b)| normal.dot((p - a).cross(b - a)) / (b - a).length()).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let (mut off, mut whole) = (0.0, 0.0);
+    for (patch, ring) in its.iter().enumerate() {
+        let polygon = fine.mesh.polygon(patch);
+        if scene.polygon(polygon).material().diffuse[0] == 0.0 {
+            continue;
+        }
+        let middle = ring.iter().sum::<DVec3>() / ring.len() as f64;
+        let area = (ring[1] - ring[0]).cross(ring[2] - ring[0]).length() * if ring.len() == 4 { 1.0 } else { 0.5 };
+        let nearest = of_polygon[&polygon]
+            .iter()
+            .min_by(|&&a, &&b| outside(&own[a], middle).total_cmp(&outside(&own[b], middle)));
+        let found = coarse.radiosity[*nearest.expect("a patch")];
+        off += area * (found - fine.radiosity[patch]).length_squared();
+        whole += area * fine.radiosity[patch].length_squared();
+    }
+    (off / whole).sqrt()
+}
+
+#[test]
+fn halving_where_light_changes_is_better_than_finer_patches_everywhere() {
+    let scene = room_with_table();
+    let fine = subdivided(&scene, 0.2, 1.0, 0);
+    let even = subdivided(&scene, 0.4, 1.0, 0);
+    let halved = subdivided(&scene, 0.8, 0.8, 2);
+    let [of_even, of_halved] = [&even, &halved].map(|solved| difference(&scene, solved, &fine));
+    println!("{} of {} even patches, {of_halved} of {} halved ones", of_even, even.mesh.len(), halved.mesh.len());
+    assert!(halved.mesh.len() < even.mesh.len() && of_halved < 0.9 * of_even, "{of_halved} {of_even}");
+    assert!(halved.shots * 2 < even.shots, "{} {}", halved.shots, even.shots);
+}
+
+#[test]
+fn a_guess_changes_the_way_and_not_the_solution() {
+    let scene = room_with_table();
+    let mesh = PatchMesh::new(&scene, 1.0).expect("a mesh");
+    let exchange =
+        Exchange::of_mesh(&mesh, ExchangeOptions { tolerance: 1e-2, ..ExchangeOptions::default() }).expect("patches");
+    let solved = |guess: Vec<DVec3>, stop: usize| {
+        let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+        solver.start_from(guess).expect("one for each patch");
+        solver.solve(1e-11, |solver| solver.state().shots < stop).expect("solved");
+        assert!(solver.balance().defect() < 1e-12, "{:?}", solver.balance());
+        solver.state().clone()
+    };
+    let plain = solved(Vec::new(), usize::MAX);
+    let wild = (0..mesh.len()).map(|k| DVec3::new(1.0, -0.5, (k % 7) as f64)).collect();
+    let near = plain.radiosity.iter().map(|b| b * 1.01).collect::<Vec<_>>();
+    let most = plain.radiosity.iter().map(|b| b.max_element()).fold(0.0, f64::max);
+    for (guess, is_near) in [(wild, false), (near, true)] {
+        let found: SolverState = solved(guess, usize::MAX);
+        // As with overshooting above.
+        let off =
+            plain.radiosity.iter().zip(&found.radiosity).map(|(a, b)| (a - b).abs().max_element()).fold(0.0, f64::max);
+        assert!(off < 1e-7 * most, "{off} of {most}");
+        assert!(!is_near || found.shots < plain.shots, "{} {}", found.shots, plain.shots);
+        // Interrupted while it guesses, it comes to the same bits.
+        let first = solved(found.guess.clone(), 20);
+        assert!(first.guessed < first.guess.len());
+        let mut second = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+        second.resume(first).expect("its own");
+        second.solve(1e-11, |_| true).expect("solved");
+        assert_eq!(*second.state(), found);
+    }
+    let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+    assert!(matches!(solver.start_from(vec![DVec3::ONE; 3]), Err(RadiosityError::OtherState { found: 3, .. })));
+    let bad = vec![DVec3::INFINITY; mesh.len()];
+    assert!(matches!(solver.start_from(bad), Err(RadiosityError::BadState { patch: 0 })));
+}
+
+#[test]
+fn rows_in_any_order_have_the_same_bits() {
+    let scene = room_with_table();
+    let mesh = PatchMesh::new(&scene, 0.8).expect("a mesh");
+    let exchange = Exchange::of_mesh(&mesh, ExchangeOptions::default()).expect("patches");
+    let rows = RowsOnce::new(&exchange);
+    // 59 and the number of patches have no common divisor, and some are asked for twice.
+    assert!(!mesh.len().is_multiple_of(59));
+    for k in 0..mesh.len() + 9 {
+        let patch = k * 59 % mesh.len();
+        assert_eq!(rows.row(patch), exchange.row(patch));
+    }
+    assert!(rows.row(mesh.len()).is_err());
+}
+
+/// Cohen et al. 1988, by hand.
+#[test]
+fn the_ambient_term_is_that_of_the_paper_and_comes_nearer_to_the_solution() {
+    let coloured = |diffuse: [f64; 3], emission: f64| Material { diffuse, ..material(0.0, emission) };
+    let scene = hollow(coloured([0.8, 0.5, 0.2], 0.0), coloured([0.1, 0.3, 0.0], 1.0));
+    let exchange = exchange(&scene, 1e-6);
+    let mut solver =
+        Solver::new(&scene, &exchange, SolverOptions { batch: 1, ..SolverOptions::default() }).expect("a solver");
+    let (lid, walls) = (6.0, 2.0 * (3.0 + 4.5) + 6.0);
+    for k in 0..3 {
+        let mean = (walls * [0.8, 0.5, 0.2][k] + lid * [0.1, 0.3, 0.0][k]) / (walls + lid);
+        let irradiance = PI * lid / (walls + lid) / (1.0 - mean);
+        assert!((solver.ambient()[0][k] - [0.8, 0.5, 0.2][k] * irradiance).abs() < 1e-13);
+        assert!((solver.ambient()[5][k] - [0.1, 0.3, 0.0][k] * irradiance).abs() < 1e-13);
+    }
+    // After the first shot what is unshot is on the walls.
+    solver.shoot().expect("shot");
+    let areas = [6.0, 3.0, 3.0, 4.5, 4.5, 6.0];
+    let unshot: DVec3 = solver.state().unshot.iter().zip(areas).map(|(&b, area)| b * area).sum();
+    let mean = (walls * 0.8 + lid * 0.1) / (walls + lid);
+    let ambient = solver.ambient();
+    assert!((ambient[2].x - 0.8 * unshot.x / (walls + lid) / (1.0 - mean)).abs() < 1e-13);
+    let (before, balance) = (solver.radiosity().to_vec(), solver.balance());
+    solver.solve(1e-12, |_| true).expect("solved");
+    let power = |off: &mut dyn Iterator<Item = DVec3>| {
+        off.zip(areas).map(|(b, area)| b.abs().element_sum() * area).sum::<f64>()
+    };
+    let without = power(&mut before.iter().zip(solver.radiosity()).map(|(b, end)| end - b));
+    let with = power(&mut before.iter().zip(&ambient).zip(solver.radiosity()).map(|((b, more), end)| end - b - more));
+    assert!(with < 0.2 * without, "{with} {without}");
+    assert!(balance.defect() < 1e-12 && solver.ambient()[0].max_element() < 1e-11);
 }
 
 #[test]
@@ -243,7 +453,7 @@ fn surfaces_are_finer_where_radiosity_changes_and_right_where_they_are_not() {
     let exchange = exchange(&patches, 1e-3);
     let mut solver = Solver::new(&patches, &exchange, SolverOptions::default()).expect("a solver");
     solver.solve(1e-2, |_| true).expect("solved");
-    let gather = Gather::new(SceneOrder::new(&patches), solver.emission(), solver.reflectance(), solver.radiosity());
+    let gather = Gather::new(&exchange, solver.emission(), solver.reflectance(), solver.radiosity());
     let coarse = SurfaceOptions { depth: 0, ..SurfaceOptions::default() };
     let coarse = Surface::new(&patches, &of, &gather, &coarse).expect("a surface");
     let fine = Surface::new(&patches, &of, &gather, &SurfaceOptions::default()).expect("a surface");

@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3, UVec2};
 use nusselt::brdf::{Brdf, Fresnel, Lambert, Light, Lighting, Mirror, Phong, Sky, Sum};
 use nusselt::contour::{Domain, Frustum, SceneOrder, Viewpoint};
-use nusselt::factors::mesh_scene;
+use nusselt::factors::{Exchange, ExchangeOptions, PatchMesh, mesh_scene};
 use nusselt::picture::PixelParts;
 use nusselt::radiosity::SurfaceOptions;
 use nusselt::render::{Indirect, RenderError, Rendered, Shader, ShaderOptions, Shading, Spot, render, render_bands};
@@ -135,7 +135,10 @@ fn furnace(patch: f64, rho: f64, emission: f64) -> (Scene, Indirect) {
 fn a_furnace_looks_even_however_it_is_shaded() {
     let (rho, emission) = (0.6, 2.0);
     let (scene, gathering) = furnace(0.7, rho, emission);
-    let interpolating = gathering.clone().interpolated(&SurfaceOptions::default()).expect("a surface");
+    let mesh = PatchMesh::new(&scene, 0.7).expect("a mesh");
+    let exchange = Exchange::of_mesh(&mesh, ExchangeOptions::default()).expect("patches");
+    let options = SurfaceOptions::default();
+    let interpolating = gathering.clone().interpolated(&exchange, &mesh.regions(), &options).expect("a surface");
     assert!(interpolating.corner_count() > 0 && gathering.corner_count() == 0);
     let camera = Frustum::new(DVec3::new(1.0, 1.5, -0.4), DVec3::Z, 80.0, 1.0).expect("a camera");
     let ways = [
@@ -384,11 +387,13 @@ fn what_is_seen_inside_of_a_hood_has_no_light_from_outside() {
         .mesh(&square([-4.0, -4.0], [4.0, 4.0], 5.0), &[vec![3, 2, 1, 0]], material("ceiling", RHO, 0.0))
         .build()
         .expect("a scene");
-    let (patches, of) = mesh_scene(&scene, 1.0).expect("a mesh");
-    let count = patches.polygon_count();
+    let mesh = PatchMesh::new(&scene, 1.0).expect("a mesh");
+    let (patches, of, count) = (mesh.patches().expect("a scene"), mesh.polygons(), mesh.len());
+    let exchange = Exchange::of_mesh(&mesh, ExchangeOptions::default()).expect("patches");
     let radiosity = vec![DVec3::ONE; count];
     let indirect = Indirect::new(&patches, &of, scene.polygon_count(), &vec![DVec3::ZERO; count], &radiosity);
-    let indirect = indirect.interpolated(&SurfaceOptions::default()).expect("a surface");
+    let options = SurfaceOptions::default();
+    let indirect = indirect.interpolated(&exchange, &mesh.regions(), &options).expect("a surface");
     let shader = shader(&scene, Shading::Contour).with_indirect(indirect).expect("its patches");
     let at = |x: f64, y: f64| shader.reflected(&floor_spot(x, y), DVec3::Z, 0).expect("shaded").x;
     for k in 0..400 {

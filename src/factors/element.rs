@@ -1,7 +1,7 @@
 //! Elements: the flat convex parts that patches are made of, and how a scene falls into them.
 
 use super::facets::Facets;
-use super::mesh;
+use super::patch_mesh::PatchMesh;
 use super::placement::Placement;
 use super::row::{PatchInfo, PatchShape};
 use super::shape::{Frame, centre, double_area, sides, turn};
@@ -50,50 +50,43 @@ pub(super) struct Elements {
 
 impl Elements {
     pub(super) fn of(scene: &Scene, facets: &Facets, plan: PatchPlan) -> Result<Self, ExchangeError> {
-        let frames: Vec<Frame> = facets.all.iter().map(|facet| Frame::through(facet.spanning)).collect();
-        let mut found = Self {
+        if let PatchPlan::Mesh { longest_edge } = plan {
+            return Self::of_mesh(&PatchMesh::of(scene, facets, longest_edge)?, facets);
+        }
+        let mut found = Self::none(facets);
+        let mut of_object: Vec<Option<u32>> = vec![None; scene.objects().len()];
+        for polygon in scene.polygons() {
+            let name = polygon.object_name();
+            let known = of_object[polygon.object().index()].filter(|_| plan == PatchPlan::Objects);
+            let patch = known.map_or_else(|| found.patch(name.to_owned(), polygon.id()), Ok)?;
+            of_object[polygon.object().index()] = Some(patch);
+            for piece in polygon.pieces() {
+                found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement))?;
+            }
+        }
+        Ok(found)
+    }
+
+    /// Of the patches of a mesh of the same scene.
+    pub(super) fn of_mesh(mesh: &PatchMesh, facets: &Facets) -> Result<Self, ExchangeError> {
+        let mut found = Self::none(facets);
+        for part in &mesh.parts {
+            let name = mesh.scene().polygon(part.polygon).object_name();
+            let patch = found.patch(name.to_owned(), part.polygon)?;
+            found.add(patch, facets.of_piece[part.piece.index()], part.ring.clone())?;
+        }
+        Ok(found)
+    }
+
+    fn none(facets: &Facets) -> Self {
+        let frames = frames(facets);
+        Self {
             patches: Vec::new(),
             all: Vec::new(),
             of_patch: Vec::new(),
             of_facet: vec![Vec::new(); frames.len()],
             frames,
-        };
-        let mut of_object: Vec<Option<u32>> = vec![None; scene.objects().len()];
-        for polygon in scene.polygons() {
-            let name = polygon.object_name();
-            match plan {
-                PatchPlan::Polygons => {
-                    let patch = found.patch(name.to_owned(), polygon.id())?;
-                    for piece in polygon.pieces() {
-                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement))?;
-                    }
-                }
-                PatchPlan::Objects => {
-                    let known = of_object[polygon.object().index()];
-                    let patch = known.map_or_else(|| found.patch(name.to_owned(), polygon.id()), Ok)?;
-                    of_object[polygon.object().index()] = Some(patch);
-                    for piece in polygon.pieces() {
-                        found.add(patch, facets.of_piece[piece.id().index()], points(piece, facets.placement))?;
-                    }
-                }
-                PatchPlan::Mesh { longest_edge } => {
-                    for piece in polygon.pieces() {
-                        let outline: Vec<_> =
-                            piece.vertices().iter().map(|&id| (id, facets.placement.local(scene.vertex(id)))).collect();
-                        let facet = facets.of_piece[piece.id().index()];
-                        let frame = &found.frames[facet as usize];
-                        let longest = facets.placement.local_length(longest_edge);
-                        let parts = mesh::elements(&outline, frame, longest)
-                            .map_err(|mesh::TooFine| ExchangeError::TooFine { polygon: polygon.id() })?;
-                        for part in parts {
-                            let patch = found.patch(name.to_owned(), polygon.id())?;
-                            found.add(patch, facet, part)?;
-                        }
-                    }
-                }
-            }
         }
-        Ok(found)
     }
 
     fn patch(&mut self, name: String, polygon: PolygonId) -> Result<u32, ExchangeError> {
@@ -152,6 +145,11 @@ impl Elements {
         self.patches[patch as usize].area += area;
         Ok(())
     }
+}
+
+/// The plane of each facet.
+pub(super) fn frames(facets: &Facets) -> Vec<Frame> {
+    facets.all.iter().map(|facet| Frame::through(facet.spanning)).collect()
 }
 
 fn points(piece: PieceRef<'_>, placement: Placement) -> Vec<DVec3> {

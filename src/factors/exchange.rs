@@ -10,7 +10,7 @@ use super::row_space::RowSpace;
 use super::seen::{Columns, Looker};
 use super::shared::{self, Shared};
 use super::tree::ElementTree;
-use super::{ExchangeError, ExchangeOptions, PatchPlan};
+use super::{ExchangeError, ExchangeOptions, PatchMesh, PatchPlan};
 use crate::parallel;
 use crate::scene::Scene;
 use std::ops::Range;
@@ -38,10 +38,10 @@ const ATTEMPTS: [(f64, bool); 3] = [(1.0, false), (1.0, true), (0.1, true)];
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Exchange {
-    facets: Facets,
-    elements: Elements,
-    trees: Vec<ElementTree>,
-    options: ExchangeOptions,
+    pub(super) facets: Facets,
+    pub(super) elements: Elements,
+    pub(super) trees: Vec<ElementTree>,
+    pub(super) options: ExchangeOptions,
     /// Areas as they are in the scene.
     patches: Vec<PatchInfo>,
 }
@@ -53,9 +53,6 @@ impl Exchange {
     /// If an option is out of range or a mesh too fine.
     pub fn new(scene: &Scene, plan: PatchPlan, options: ExchangeOptions) -> Result<Self, ExchangeError> {
         let is_positive = |x: f64| x.is_finite() && x > 0.0;
-        if !is_positive(options.tolerance) {
-            return Err(ExchangeError::BadTolerance { tolerance: options.tolerance });
-        }
         if let PatchPlan::Mesh { longest_edge } = plan
             && !is_positive(longest_edge)
         {
@@ -63,6 +60,24 @@ impl Exchange {
         }
         let facets = Facets::of(scene).map_err(ExchangeError::Facets)?;
         let elements = Elements::of(scene, &facets, plan)?;
+        Self::between(facets, elements, options)
+    }
+
+    /// Prepares the patches of a mesh.
+    ///
+    /// # Errors
+    /// If an option is out of range or there are too many patches.
+    pub fn of_mesh(mesh: &PatchMesh, options: ExchangeOptions) -> Result<Self, ExchangeError> {
+        let facets = Facets::of(mesh.scene()).map_err(ExchangeError::Facets)?;
+        let elements = Elements::of_mesh(mesh, &facets)?;
+        Self::between(facets, elements, options)
+    }
+
+    fn between(facets: Facets, elements: Elements, options: ExchangeOptions) -> Result<Self, ExchangeError> {
+        let tolerance = options.tolerance;
+        if !(tolerance.is_finite() && tolerance > 0.0) {
+            return Err(ExchangeError::BadTolerance { tolerance });
+        }
         let trees = elements.of_facet.iter().map(|facet| ElementTree::of(&elements.all, facet)).collect();
         let mut patches = elements.patches.clone();
         for (number, patch) in patches.iter_mut().enumerate() {
@@ -152,7 +167,7 @@ impl Exchange {
         Ok(rows.by_points(number, other, effort, &mut RowSpace::new(&self.elements)))
     }
 
-    fn row_in(&self, patch: usize, shared: &Shared, space: &mut RowSpace) -> Result<Row, ExchangeError> {
+    pub(super) fn row_in(&self, patch: usize, shared: &Shared, space: &mut RowSpace) -> Result<Row, ExchangeError> {
         let mut failure = None;
         let explained = explained(self.options.tolerance);
         for (part, towards_sides) in ATTEMPTS {

@@ -1,7 +1,6 @@
 //! Why there is no solution.
 
 use crate::brdf::BrdfError;
-use crate::contour::ViewError;
 use crate::factors::ExchangeError;
 use crate::scene::PolygonId;
 
@@ -45,14 +44,6 @@ pub enum RadiosityError {
     /// There is no row of form factors.
     #[error(transparent)]
     Exchange(#[from] ExchangeError),
-    /// There is no view from a point.
-    #[error("no view from polygon {polygon}: {source}")]
-    View {
-        /// The polygon that the point is on.
-        polygon: PolygonId,
-        /// Why.
-        source: ViewError,
-    },
     /// The mesh would have too many corners.
     #[error("the mesh would have more than {limit} corners; ask for less detail")]
     TooManyCorners {

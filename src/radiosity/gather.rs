@@ -1,30 +1,39 @@
 //! Radiosities of points.
 
 use super::RadiosityError;
-use crate::contour::{Domain, SceneOrder, ViewError, ViewOptions, ViewSpaces, Viewpoint};
+use crate::factors::{Exchange, Receivers};
 use crate::parallel;
-use crate::scene::{PolygonId, Side};
+use crate::scene::PolygonId;
 use glam::DVec3;
 
 /// Computes radiosities of points on surfaces from those of the patches that they see: the irradiance is the sum over all visible cells of the form
 /// factor times the radiosity, exactly for patches of constant radiosity.
 pub struct Gather<'a> {
-    order: SceneOrder,
+    receivers: Receivers<'a>,
     emission: &'a [DVec3],
     reflectance: &'a [DVec3],
     radiosity: &'a [DVec3],
-    spaces: ViewSpaces,
 }
 
 impl<'a> Gather<'a> {
-    /// For the scene of patches, polygon k being patch k, with what each emits, reflects, and its radiosity.
+    /// For patches, with what each emits, reflects, and its radiosity.
     ///
     /// # Panics
-    /// If there are not as many of each as polygons.
-    pub fn new(order: SceneOrder, emission: &'a [DVec3], reflectance: &'a [DVec3], radiosity: &'a [DVec3]) -> Self {
-        let count = order.scene().polygon_count();
-        assert!([emission, reflectance, radiosity].iter().all(|list| list.len() == count), "one for every polygon");
-        Self { order, emission, reflectance, radiosity, spaces: ViewSpaces::new() }
+    /// If there are not as many of each as patches.
+    pub fn new(
+        exchange: &'a Exchange,
+        emission: &'a [DVec3],
+        reflectance: &'a [DVec3],
+        radiosity: &'a [DVec3],
+    ) -> Self {
+        let count = exchange.patches().len();
+        assert!([emission, reflectance, radiosity].iter().all(|list| list.len() == count), "one for every patch");
+        Self { receivers: Receivers::new(exchange), emission, reflectance, radiosity }
+    }
+
+    /// The patches.
+    pub(super) fn exchange(&self) -> &'a Exchange {
+        self.receivers.exchange()
     }
 
     /// What a patch emits.
@@ -32,40 +41,30 @@ impl<'a> Gather<'a> {
         self.emission[patch.index()]
     }
 
-    /// The radiosity of the front of a polygon at the point of it that is nearest to a given one.
+    /// What of the radiosity of a patch is reflected, and whether it reflects at all.
+    pub(super) fn reflected(&self, patch: usize) -> Option<DVec3> {
+        let reflects = self.reflectance[patch] != DVec3::ZERO;
+        reflects.then(|| self.radiosity[patch] - self.emission[patch])
+    }
+
+    /// The radiosity of the front of a patch at the point of its polygon that is nearest to a given one.
     ///
     /// A point on the boundary does not see what stands on it there; take one a little inside.
     ///
     /// # Errors
     /// If there is no view.
-    pub fn at(&self, polygon: PolygonId, near: DVec3) -> Result<DVec3, RadiosityError> {
-        Ok(self.uncovered(polygon, near)?.unwrap_or(self.emission[polygon.index()]))
+    pub fn at(&self, patch: PolygonId, near: DVec3) -> Result<DVec3, RadiosityError> {
+        Ok(self.uncovered(patch, near)?.unwrap_or(self.emission[patch.index()]))
     }
 
     /// The same, but `None` where nothing but backs is seen: below what stands on a surface.
-    fn uncovered(&self, polygon: PolygonId, near: DVec3) -> Result<Option<DVec3>, RadiosityError> {
-        let [emission, reflectance] = [self.emission, self.reflectance].map(|list| list[polygon.index()]);
+    fn uncovered(&self, patch: PolygonId, near: DVec3) -> Result<Option<DVec3>, RadiosityError> {
+        let [emission, reflectance] = [self.emission, self.reflectance].map(|list| list[patch.index()]);
         if reflectance == DVec3::ZERO {
             return Ok(Some(emission));
         }
-        let irradiance = self.irradiance(polygon, near).map_err(|source| RadiosityError::View { polygon, source })?;
+        let irradiance = self.receivers.irradiance(patch.index(), near, self.radiosity)?;
         Ok(irradiance.map(|irradiance| emission + reflectance * irradiance))
-    }
-
-    fn irradiance(&self, polygon: PolygonId, near: DVec3) -> Result<Option<DVec3>, ViewError> {
-        let Ok(viewpoint) = Viewpoint::on_surface(self.order.scene(), polygon, Side::Front, near) else {
-            // It has no area.
-            return Ok(Some(DVec3::ZERO));
-        };
-        self.spaces.with(|space| {
-            let image = self.order.view_in(space, &viewpoint, &Domain::Above, &ViewOptions::default())?;
-            if image.cells().all(|cell| cell.side() == Some(Side::Back)) {
-                return Ok(None);
-            }
-            let factors = image.form_factors();
-            let seen = factors.iter().flat_map(|factors| &factors.polygons);
-            Ok(Some(seen.map(|seen| self.radiosity[seen.polygon.index()] * seen.front).sum()))
-        })
     }
 
     /// [`Gather::at`] for many points, in their order, by all threads; `None` where nothing but backs is seen. `done` is told of each.
@@ -74,8 +73,8 @@ impl<'a> Gather<'a> {
         points: Vec<(PolygonId, DVec3)>,
         done: &(dyn Fn(usize) + Sync),
     ) -> Result<Vec<Option<DVec3>>, RadiosityError> {
-        let found = parallel::map(points, |(polygon, near)| {
-            let found = self.uncovered(polygon, near);
+        let found = parallel::map(points, |(patch, near)| {
+            let found = self.uncovered(patch, near);
             done(1);
             found
         });
@@ -87,6 +86,6 @@ impl<'a> Gather<'a> {
     /// # Errors
     /// The first one that there is no view from.
     pub fn at_all(&self, points: Vec<(PolygonId, DVec3)>) -> Result<Vec<DVec3>, RadiosityError> {
-        parallel::map(points, |(polygon, near)| self.at(polygon, near)).into_iter().collect()
+        parallel::map(points, |(patch, near)| self.at(patch, near)).into_iter().collect()
     }
 }

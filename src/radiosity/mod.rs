@@ -4,6 +4,7 @@
 //! [`Exchange`](crate::factors::Exchange), whose rows close: what one patch sends arrives at fronts, at backs, or leaves the scene, and nothing is lost.
 //! [`Gather`] computes radiosities of points from the exact contour image above each, without error but that of the patches' radiosities; a [`Surface`] is
 //! a mesh with such radiosities at its corners, finer where they change quickly.
+//! [`uneven_patches`] tells which patches are too large for what changes on them; with those halved, [`Solver::start_from`] goes on.
 //!
 //! Radiosities and emitted radiances are linear RGB: a material's emission L is a radiosity of pi L, and so the picture of a surface of radiosity B has the radiance B / pi.
 
@@ -12,12 +13,14 @@ mod error;
 mod gather;
 mod solver;
 mod surface;
+mod uneven;
 
 pub use balance::Balance;
 pub use error::RadiosityError;
 pub use gather::Gather;
 pub use solver::{Shot, Solver, SolverOptions, SolverState};
 pub use surface::{Surface, SurfaceOptions};
+pub use uneven::uneven_patches;
 
 use glam::DVec3;
 

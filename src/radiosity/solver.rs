@@ -1,7 +1,7 @@
 //! Progressive refinement.
 
 use super::{Balance, RadiosityError, strength};
-use crate::factors::{Exchange, PatchInfo, Row};
+use crate::factors::{Exchange, PatchInfo, Row, RowsOnce};
 use crate::parallel;
 use crate::scene::Scene;
 use glam::DVec3;
@@ -48,6 +48,10 @@ pub struct SolverState {
     pub gone: [DVec3; 3],
     /// How many times a patch has shot.
     pub shots: usize,
+    /// What patches send first, whether they have it or not: radiosities from a similar solution, or none.
+    pub guess: Vec<DVec3>,
+    /// So many patches have sent that, in their order.
+    pub guessed: usize,
 }
 
 /// Solves for the radiosities of the patches of a scene by shooting: whatever has most left to send sends it.
@@ -75,6 +79,7 @@ pub struct Solver<'a> {
     emission: Vec<DVec3>,
     reflectance: Vec<DVec3>,
     state: SolverState,
+    source: RowsOnce<'a>,
     rows: Vec<Option<Arc<Row>>>,
     kept_entries: usize,
 }
@@ -101,7 +106,18 @@ impl<'a> Solver<'a> {
         }
         let state = SolverState { radiosity: emission.clone(), unshot: emission.clone(), ..SolverState::default() };
         let rows = vec![None; emission.len()];
-        Ok(Self { exchange, options, emission, reflectance, state, rows, kept_entries: 0 })
+        let source = RowsOnce::new(exchange);
+        Ok(Self { exchange, options, emission, reflectance, state, source, rows, kept_entries: 0 })
+    }
+
+    /// Starts anew, from radiosities that the solution will be near to, such as those of coarser patches: every patch sends as much first, as if it had it,
+    /// and what was wrong is settled after that. The solution is the same, to what is left; it takes one row for every patch, and few more shots.
+    ///
+    /// # Errors
+    /// If there is not one for every patch, or one is not finite.
+    pub fn start_from(&mut self, guess: Vec<DVec3>) -> Result<(), RadiosityError> {
+        let (radiosity, unshot) = (self.emission.clone(), self.emission.clone());
+        self.resume(SolverState { radiosity, unshot, guess, ..SolverState::default() })
     }
 
     /// Goes on from a state that [`Solver::state`] gave.
@@ -110,13 +126,15 @@ impl<'a> Solver<'a> {
     /// If it is that of another number of patches, or has numbers that are not finite.
     pub fn resume(&mut self, state: SolverState) -> Result<(), RadiosityError> {
         let expected = self.emission.len();
-        for found in [state.radiosity.len(), state.unshot.len()] {
+        let guess = if state.guess.is_empty() { expected } else { state.guess.len() };
+        for found in [state.radiosity.len(), state.unshot.len(), guess] {
             if found != expected {
                 return Err(RadiosityError::OtherState { found, expected });
             }
         }
         let is_bad = |v: &DVec3| !v.is_finite();
-        let bad = state.radiosity.iter().zip(&state.unshot).position(|(b, unshot)| is_bad(b) || is_bad(unshot));
+        let first_bad = |list: &[DVec3]| list.iter().position(is_bad);
+        let bad = [&state.radiosity, &state.unshot, &state.guess].into_iter().filter_map(|list| first_bad(list)).min();
         if let Some(patch) = bad.or(state.gone.iter().any(is_bad).then_some(0)) {
             return Err(RadiosityError::BadState { patch });
         }
@@ -160,14 +178,19 @@ impl<'a> Solver<'a> {
         Balance { emitted, absorbed, backs, background, unshot, unsettled }
     }
 
-    /// The ambient term of progressive refinement for each patch: what it would get in addition if all that is yet to be sent were spread evenly.
-    /// For display before the solution is there; it is no part of it.
+    /// The ambient term of progressive refinement for each patch (Cohen et al. 1988, section 4.3): the radiosity that it would have in addition if all that is yet to be
+    /// sent were spread evenly over all surfaces, and reflected by each as by their mean, again and again: with areas A, reflectances rho and what is unshot dB,
+    ///
+    /// ```text
+    /// ambient_i = rho_i sum(dB_j A_j) / sum(A_j) / (1 - sum(rho_j A_j) / sum(A_j))
+    /// ```
+    ///
+    /// by channel; a mean reflectance above 0.999 is taken as that. For display before the solution is there; it is no part of it.
     pub fn ambient(&self) -> Vec<DVec3> {
         let irradiance = self.ambient_irradiance();
         self.reflectance.iter().map(|&reflectance| reflectance * irradiance).collect()
     }
 
-    /// What would arrive everywhere if all that is yet to be sent were spread evenly, with what it comes back to after reflections.
     fn ambient_irradiance(&self) -> DVec3 {
         let area: f64 = self.exchange.patches().iter().map(|patch| patch.area).sum();
         let mean = self.power(&self.reflectance) / area;
@@ -185,31 +208,51 @@ impl<'a> Solver<'a> {
     /// # Errors
     /// If there is no row of form factors for one of them.
     pub fn shoot(&mut self) -> Result<Vec<Shot>, RadiosityError> {
+        let batch = self.options.batch.max(1);
+        if self.is_guessing() {
+            let end = (self.state.guessed + batch).min(self.state.guess.len());
+            let has_some = |&patch: &usize| self.state.guess[patch] != DVec3::ZERO;
+            let patches: Vec<usize> = (self.state.guessed..end).filter(has_some).collect();
+            let rows = self.rows_of(&patches)?;
+            self.state.guessed = end;
+            let shots = patches.into_iter().zip(rows).map(|(patch, row)| {
+                let sent = self.state.guess[patch];
+                self.state.unshot[patch] -= sent;
+                self.send(patch, &row, sent)
+            });
+            return Ok(shots.collect());
+        }
         let anticipated = self.anticipated();
         let to_send = |patch: usize| self.state.unshot[patch] + self.reflectance[patch] * anticipated;
         let left = |patch: usize| strength(to_send(patch).abs()) * self.area(patch);
         let mut order: Vec<(f64, usize)> =
             (0..self.emission.len()).map(|patch| (left(patch), patch)).filter(|(power, _)| *power > 0.0).collect();
         order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        order.truncate(self.options.batch.max(1));
+        order.truncate(batch);
         let patches: Vec<usize> = order.into_iter().map(|(_, patch)| patch).collect();
         let rows = self.rows_of(&patches)?;
-        let shots = patches.into_iter().zip(rows).map(|(patch, row)| self.send(patch, &row));
+        let shots = patches.into_iter().zip(rows).map(|(patch, row)| {
+            let over = self.reflectance[patch] * self.anticipated();
+            let unshot = std::mem::replace(&mut self.state.unshot[patch], -over);
+            self.send(patch, &row, unshot + over)
+        });
         Ok(shots.collect())
+    }
+
+    /// True as long as patches send what was guessed that they have.
+    pub fn is_guessing(&self) -> bool {
+        self.state.guessed < self.state.guess.len()
     }
 
     /// The rows of some patches; those that are not kept are computed by all threads.
     fn rows_of(&mut self, patches: &[usize]) -> Result<Vec<Arc<Row>>, RadiosityError> {
         let missing = patches.iter().copied().filter(|&patch| self.rows[patch].is_none()).collect();
-        let exchange = self.exchange;
-        let found = parallel::map(missing, |patch| (patch, exchange.row(patch)));
+        let source = &self.source;
+        let found = parallel::map(missing, |patch| (patch, source.row(patch)));
         let mut passing = Vec::new();
         for (patch, row) in found {
             let row = Arc::new(row?);
-            if self.kept_entries + row.entries.len() <= self.options.most_entries {
-                self.kept_entries += row.entries.len();
-                self.rows[patch] = Some(row);
-            } else {
+            if !self.keep(&row) {
                 passing.push((patch, row));
             }
         }
@@ -220,24 +263,41 @@ impl<'a> Solver<'a> {
         Ok(patches.iter().map(row).collect())
     }
 
-    /// Computes the rows of all patches, as far as they may be kept.
-    ///
-    /// # Errors
-    /// If there is no row for some patch.
-    pub fn compute_all_rows(&mut self) -> Result<(), RadiosityError> {
-        let all: Vec<usize> = (0..self.emission.len()).collect();
-        for chunk in all.chunks(256) {
-            self.rows_of(chunk)?;
-            if self.kept_entries >= self.options.most_entries {
-                break;
-            }
+    /// Keeps a row if there is room for it.
+    fn keep(&mut self, row: &Arc<Row>) -> bool {
+        let has_room = self.kept_entries + row.entries.len() <= self.options.most_entries;
+        if has_room {
+            self.kept_entries += row.entries.len();
+            self.rows[row.patch as usize] = Some(row.clone());
         }
-        Ok(())
+        has_room
     }
 
-    fn send(&mut self, patch: usize, row: &Row) -> Shot {
-        let over = self.reflectance[patch] * self.anticipated();
-        let power = (std::mem::replace(&mut self.state.unshot[patch], -over) + over) * self.area(patch);
+    /// Takes a row that was computed before, for the same patches and with the same options, as far as it may be kept.
+    ///
+    /// # Panics
+    /// If there is no such patch.
+    pub fn take_row(&mut self, row: Row) {
+        if self.rows[row.patch as usize].is_none() {
+            self.keep(&Arc::new(row));
+        }
+    }
+
+    /// Computes the rows of all patches from a first one on, in their order, and keeps them as far as they may be; `made` sees each, and ends it by an error.
+    ///
+    /// # Errors
+    /// If there is no row for some patch, or that of `made`.
+    pub fn compute_rows<E: From<RadiosityError>>(
+        &mut self,
+        first: usize,
+        mut made: impl FnMut(&Row) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let all: Vec<usize> = (first..self.emission.len()).collect();
+        all.chunks(32).try_for_each(|chunk| self.rows_of(chunk)?.iter().try_for_each(|row| made(row)))
+    }
+
+    fn send(&mut self, patch: usize, row: &Row, radiosity: DVec3) -> Shot {
+        let power = radiosity * self.area(patch);
         for entry in &row.entries {
             let receiver = entry.column as usize;
             let arrives = power * entry.share.factor;
@@ -260,8 +320,9 @@ impl<'a> Solver<'a> {
     /// As [`Solver::shoot`]; also if it would never end, as nothing is absorbed.
     pub fn solve(&mut self, until: f64, mut watch: impl FnMut(&Self) -> bool) -> Result<(), RadiosityError> {
         let mut checked = (self.state.shots, self.balance().unshot_fraction());
-        while self.balance().unshot_fraction() > until {
-            if self.shoot()?.is_empty() || !watch(self) {
+        while self.is_guessing() || self.balance().unshot_fraction() > until {
+            let was_guessing = self.is_guessing();
+            if self.shoot()?.is_empty() && !was_guessing || !watch(self) {
                 break;
             }
             // All patches have shot many times, and as much is left.

@@ -7,7 +7,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 /// How far inside of a triangle, as a part of the way to its middle, a corner's radiosity is taken: on the boundary itself what stands on it
 /// there would not be seen.
-const INSIDE: f64 = 1e-3;
+pub(super) const INSIDE: f64 = 1e-3;
 
 /// How fine a surface is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,6 +3,7 @@
 use super::RenderError;
 use super::patch_index::{PatchIndex, off};
 use crate::contour::SceneOrder;
+use crate::factors::Exchange;
 use crate::radiosity::{Gather, RadiosityError, Surface, SurfaceOptions};
 use crate::scene::{PolygonId, Scene, Side};
 use glam::DVec3;
@@ -19,6 +20,8 @@ pub struct Indirect {
     emission: Vec<DVec3>,
     radiosity: Vec<DVec3>,
     index: PatchIndex,
+    /// The polygon whose patches those of each polygon are, if some are meshed together.
+    hosts: Option<Vec<PolygonId>>,
     surface: Option<Irradiance>,
 }
 
@@ -48,25 +51,53 @@ impl Indirect {
             emission: emission.to_vec(),
             radiosity: radiosity.to_vec(),
             index: PatchIndex::new(patches, of, polygons),
+            hosts: None,
             surface: None,
         }
+    }
+
+    /// Says that patches of polygon k are those of polygon `hosts[k]` ([`PatchMesh::joined`](crate::factors::PatchMesh::joined)).
+    ///
+    /// # Panics
+    /// If there is not one for every polygon.
+    #[must_use]
+    pub fn with_hosts(mut self, hosts: Vec<PolygonId>) -> Self {
+        let fits = |host: &PolygonId| host.index() < hosts.len();
+        assert!(self.of.iter().chain(&hosts).all(fits), "hosts are polygons of the scene");
+        self.hosts = Some(hosts);
+        self
     }
 
     /// Gathers the irradiance of what patches reflect, without what they emit, at the corners of a mesh that is finer where it changes ([`Surface`]), by all threads. Between them it is
     /// interpolated linearly for matt fronts; light straight from lamps is not part of it.
     ///
+    /// The exchange is that of the same patches; corners are shared within regions ([`PatchMesh::regions`](crate::factors::PatchMesh::regions)).
+    ///
     /// # Errors
     /// As [`Surface::new`].
-    pub fn interpolated(self, options: &SurfaceOptions) -> Result<Self, RadiosityError> {
-        self.interpolated_watched(options, &|_| ())
+    ///
+    /// # Panics
+    /// If the exchange or the regions are of another number of patches.
+    pub fn interpolated(
+        self,
+        exchange: &Exchange,
+        regions: &[PolygonId],
+        options: &SurfaceOptions,
+    ) -> Result<Self, RadiosityError> {
+        self.interpolated_watched(exchange, regions, options, &|_| ())
     }
 
     /// The same; `done` is told from any thread how many more views are made.
     ///
     /// # Errors
     /// As [`Surface::new`].
+    ///
+    /// # Panics
+    /// As [`Indirect::interpolated`].
     pub fn interpolated_watched(
         mut self,
+        exchange: &Exchange,
+        regions: &[PolygonId],
         options: &SurfaceOptions,
         done: &(dyn Fn(usize) + Sync),
     ) -> Result<Self, RadiosityError> {
@@ -75,8 +106,8 @@ impl Indirect {
         let nothing = vec![DVec3::ZERO; count];
         let share = |k: u32| if self.is_matt(PolygonId(k)) { DVec3::ONE } else { DVec3::ZERO };
         let receives: Vec<DVec3> = (0..count as u32).map(share).collect();
-        let gather = Gather::new(self.order.clone(), &nothing, &receives, &reflected);
-        let surface = Surface::watched(&self.patches, &self.of, &gather, options, done)?;
+        let gather = Gather::new(exchange, &nothing, &receives, &reflected);
+        let surface = Surface::watched(&self.patches, regions, &gather, options, done)?;
         let starts = (0..=count).map(|k| surface.patches.partition_point(|patch| patch.index() < k)).collect();
         self.surface = Some(Irradiance { surface, starts });
         Ok(self)
@@ -95,7 +126,8 @@ impl Indirect {
     pub(super) fn check(&self, scene: &Scene) -> Result<(), RenderError> {
         let found = self.of.iter().map(|polygon| polygon.index() + 1).max().unwrap_or(0);
         let expected = scene.polygon_count();
-        if found > expected { Err(RenderError::OtherPatches { found, expected }) } else { Ok(()) }
+        let hosts = self.hosts.as_ref().map_or(expected, Vec::len);
+        if found > expected || hosts != expected { Err(RenderError::OtherPatches { found, expected }) } else { Ok(()) }
     }
 
     /// The radiance that a side of a patch sends.
@@ -105,6 +137,7 @@ impl Indirect {
 
     /// The patch that a point of a polygon is on.
     pub(super) fn patch_at(&self, polygon: PolygonId, point: DVec3) -> Option<PolygonId> {
+        let polygon = self.hosts.as_ref().map_or(polygon, |hosts| hosts[polygon.index()]);
         self.index.patch_at(&self.patches, polygon, point)
     }
 

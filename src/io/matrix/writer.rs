@@ -142,6 +142,17 @@ impl MatrixWriter {
         Ok(())
     }
 
+    /// Gives the run up: removes what there is of it.
+    ///
+    /// # Errors
+    /// If a file cannot be removed.
+    pub fn discard(self) -> Result<(), MatrixError> {
+        let Self { path, partial, out, .. } = self;
+        drop(out);
+        let manifest = manifest_path(&path);
+        [partial, manifest].iter().try_for_each(|file| fs::remove_file(file).map_err(MatrixError::io(file)))
+    }
+
     /// Writes the final file from the rows, renames it, and removes what the unfinished run left.
     ///
     /// # Errors

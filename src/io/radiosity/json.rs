@@ -22,6 +22,8 @@ pub struct RadiosityTable<'a> {
     pub of: &'a [PolygonId],
     /// The middle of each.
     pub centers: &'a [DVec3],
+    /// The ambient term of each ([`Solver::ambient`]), if it is to be told; radiosities are without it.
+    pub ambient: Option<&'a [DVec3]>,
 }
 
 #[derive(Serialize)]
@@ -34,6 +36,8 @@ struct PatchRow<'a> {
     reflectance: [f64; 3],
     radiosity: [f64; 3],
     unshot: [f64; 3],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ambient: Option<[f64; 3]>,
 }
 
 #[derive(Serialize)]
@@ -52,7 +56,7 @@ struct BalanceRow {
 /// Those of `out`.
 pub fn write_radiosity_json(table: &RadiosityTable<'_>, out: impl Write) -> io::Result<()> {
     let mut out = BufWriter::new(out);
-    let RadiosityTable { solver, patches, of, centers } = *table;
+    let RadiosityTable { solver, patches, of, centers, ambient } = *table;
     writeln!(out, "{{")?;
     field(&mut out, "schema", &RADIOSITY_SCHEMA)?;
     field(&mut out, "shots", &solver.state().shots)?;
@@ -72,6 +76,7 @@ pub fn write_radiosity_json(table: &RadiosityTable<'_>, out: impl Write) -> io::
             reflectance: solver.reflectance()[k].to_array(),
             radiosity: solver.radiosity()[k].to_array(),
             unshot: solver.state().unshot[k].to_array(),
+            ambient: ambient.map(|ambient| ambient[k].to_array()),
         };
         serde_json::to_writer(out, &row).map_err(io::Error::from)
     })?;

@@ -8,4 +8,4 @@ mod state;
 pub use html::write_radiosity_html;
 pub use json::{RADIOSITY_SCHEMA, RadiosityTable, write_radiosity_json};
 pub use mesh::{auto_exposure, radiosity_meshes, write_radiosity_ply};
-pub use state::{STATE_SCHEMA, StateError, StateKey, read_state, write_state};
+pub use state::{HalvingKey, KeptState, STATE_SCHEMA, StateError, StateKey, read_state, write_state};

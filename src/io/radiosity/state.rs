@@ -7,21 +7,34 @@ use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
 /// The schema's name.
-pub const STATE_SCHEMA: &str = "nusselt.radiosity-state/1";
+pub const STATE_SCHEMA: &str = "nusselt.radiosity-state/2";
 
 /// What a state belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StateKey {
-    /// Of the patches ([`scene_digest`](crate::io::matrix::scene_digest)).
+    /// Of the patches ([`scene_digest`](crate::io::matrix::scene_digest)), before any is halved.
     pub patches: Digest,
     /// Of what they emit and reflect.
     pub materials: Digest,
     /// The tolerance of form factors.
     pub tolerance: f64,
+    /// Whether patches overshoot.
+    pub overshoot: bool,
+    /// If patches are halved: those on which radiosities differ by more than this part, when so much is left to be sent.
+    pub halving: Option<HalvingKey>,
+}
+
+/// What it depends on which patches are halved.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct HalvingKey {
+    /// The part by which radiosities of one patch may differ.
+    pub gradient: f64,
+    /// The part of the emitted power that is left when that is looked at.
+    pub until: f64,
 }
 
 impl StateKey {
-    /// Of a scene of patches.
+    /// Of a scene of patches, solved to this tolerance without overshooting or halving.
     pub fn new(scene: &crate::scene::Scene, tolerance: f64) -> Self {
         let materials = scene.polygons().fold(Digest::EMPTY, |digest, polygon| {
             let material = polygon.material();
@@ -29,8 +42,18 @@ impl StateKey {
             let colours = [reflected.to_array(), material.emission];
             colours.iter().flatten().fold(digest, |digest, x| digest.with(&x.to_bits().to_le_bytes()))
         });
-        Self { patches: crate::io::matrix::scene_digest(scene), materials, tolerance }
+        let patches = crate::io::matrix::scene_digest(scene);
+        Self { patches, materials, tolerance, overshoot: false, halving: None }
     }
+}
+
+/// What is kept of an unfinished solution.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct KeptState {
+    /// The patches that were halved, ascending, time by time.
+    pub halved: Vec<Vec<u32>>,
+    /// The solution for the patches after that.
+    pub solver: SolverState,
 }
 
 /// Why a state cannot be gone on from.
@@ -53,25 +76,31 @@ pub enum StateError {
 struct Kept {
     schema: String,
     key: StateKey,
+    halved: Vec<Vec<u32>>,
     shots: usize,
     gone: [[f64; 3]; 3],
     radiosity: Vec<[f64; 3]>,
     unshot: Vec<[f64; 3]>,
+    guess: Vec<[f64; 3]>,
+    guessed: usize,
 }
 
 /// Writes a state.
 ///
 /// # Errors
 /// Those of `out`.
-pub fn write_state(key: &StateKey, state: &SolverState, out: &mut impl Write) -> io::Result<()> {
+pub fn write_state(key: &StateKey, halved: &[Vec<u32>], solver: &SolverState, out: &mut impl Write) -> io::Result<()> {
     let list = |colours: &[DVec3]| colours.iter().map(DVec3::to_array).collect();
     let kept = Kept {
         schema: STATE_SCHEMA.to_owned(),
         key: *key,
-        shots: state.shots,
-        gone: state.gone.map(|power| power.to_array()),
-        radiosity: list(&state.radiosity),
-        unshot: list(&state.unshot),
+        halved: halved.to_vec(),
+        shots: solver.shots,
+        gone: solver.gone.map(|power| power.to_array()),
+        radiosity: list(&solver.radiosity),
+        unshot: list(&solver.unshot),
+        guess: list(&solver.guess),
+        guessed: solver.guessed,
     };
     serde_json::to_writer(out, &kept).map_err(io::Error::from)
 }
@@ -80,7 +109,7 @@ pub fn write_state(key: &StateKey, state: &SolverState, out: &mut impl Write) ->
 ///
 /// # Errors
 /// If it is no state, or that of something else.
-pub fn read_state(key: &StateKey, text: &str) -> Result<SolverState, StateError> {
+pub fn read_state(key: &StateKey, text: &str) -> Result<KeptState, StateError> {
     let kept: Kept = serde_json::from_str(text).map_err(|error| StateError::Malformed(error.to_string()))?;
     if kept.schema != STATE_SCHEMA {
         return Err(StateError::Malformed(format!("its schema is {:?}", kept.schema)));
@@ -89,15 +118,20 @@ pub fn read_state(key: &StateKey, text: &str) -> Result<SolverState, StateError>
         (kept.key.patches != key.patches, "another scene, or other patches"),
         (kept.key.materials != key.materials, "other materials"),
         (kept.key.tolerance.to_bits() != key.tolerance.to_bits(), "another tolerance"),
+        (kept.key.overshoot != key.overshoot, "another --overshoot"),
+        (kept.key.halving != key.halving, "another --subdivide, --gradient or --until"),
     ];
     if let Some((_, what)) = differs.into_iter().find(|(differs, _)| *differs) {
         return Err(StateError::Other { what });
     }
     let list = |colours: Vec<[f64; 3]>| colours.into_iter().map(DVec3::from).collect();
-    Ok(SolverState {
+    let solver = SolverState {
         radiosity: list(kept.radiosity),
         unshot: list(kept.unshot),
         gone: kept.gone.map(DVec3::from),
         shots: kept.shots,
-    })
+        guess: list(kept.guess),
+        guessed: kept.guessed,
+    };
+    Ok(KeptState { halved: kept.halved, solver })
 }

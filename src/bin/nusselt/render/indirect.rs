@@ -4,7 +4,7 @@ use crate::args::Common;
 use crate::failure::Failure;
 use crate::progress::{Progress, SharedProgress};
 use crate::radiosity::{parse_fraction, parse_size};
-use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, mesh_scene};
+use nusselt::factors::{Exchange, ExchangeOptions, PatchMesh};
 use nusselt::radiosity::{RadiosityError, Solver, SolverOptions, SurfaceOptions};
 use nusselt::render::{Indirect, RenderError, Shader, Shading};
 use std::fmt::Display;
@@ -22,7 +22,8 @@ pub(super) struct Interreflection {
     /// corners of a mesh; slower. Hemicubes and rays always do
     #[arg(long)]
     gather: bool,
-    /// Mesh polygons into patches with edges of at most this length, in scene units [default: a 12th of the scene's diagonal]
+    /// Mesh polygons, those of one plane and material together, into patches with edges of at most this length, in scene
+    /// units [default: a 12th of the scene's diagonal]
     #[arg(long, value_name = "SIZE", value_parser = parse_size, allow_hyphen_values = true)]
     patch: Option<f64>,
     /// Stop when so much of the emitted power is left to be sent
@@ -71,11 +72,11 @@ impl Interreflection {
         if scene.piece_count() == 0 || longest <= 0.0 {
             return Ok((shader, Solved::default()));
         }
-        let (patches, of) = mesh_scene(&scene, longest).map_err(|error| failed(&error))?;
+        let (mesh, hosts) = PatchMesh::joined(&scene, longest).map_err(|error| failed(&error))?;
+        let patches = mesh.patches().map_err(|error| failed(&error))?;
         let options = ExchangeOptions { tolerance: self.tolerance, ..ExchangeOptions::default() };
-        // The same patches as parts of whole polygons, of which there are fewer to see.
-        let plan = PatchPlan::Mesh { longest_edge: longest };
-        let exchange = Exchange::new(&scene, plan, options).map_err(|error| failed(&error))?;
+        // Patches as parts of whole polygons, of which there are fewer to see.
+        let exchange = Exchange::of_mesh(&mesh, options).map_err(|error| failed(&error))?;
         let mut solver = match Solver::new(&scene, &exchange, SolverOptions::default()) {
             Err(RadiosityError::Dark) => return Ok((shader, Solved::default())),
             solver => solver.map_err(|error| failed(&error))?,
@@ -92,12 +93,15 @@ impl Interreflection {
         result.map_err(|error| failed(&error))?;
         let solve_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        let mut indirect = Indirect::new(&patches, &of, scene.polygon_count(), solver.emission(), solver.radiosity());
+        let count = scene.polygon_count();
+        let mut indirect =
+            Indirect::new(&patches, &mesh.polygons(), count, solver.emission(), solver.radiosity()).with_hosts(hosts);
         if !self.gather && shading == Shading::Contour {
             let options = SurfaceOptions { detail: self.detail, depth: self.depth, ..SurfaceOptions::default() };
             let views = SharedProgress::new("views from corners", None, common.quiet);
-            indirect =
-                indirect.interpolated_watched(&options, &|count| views.add(count)).map_err(|error| failed(&error))?;
+            indirect = indirect
+                .interpolated_watched(&exchange, &mesh.regions(), &options, &|count| views.add(count))
+                .map_err(|error| failed(&error))?;
         }
         let solved = Solved {
             patches: patches.polygon_count(),

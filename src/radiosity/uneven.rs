@@ -1,0 +1,68 @@
+//! Which patches are too large for what changes on them.
+
+use super::surface::INSIDE;
+use super::{Gather, RadiosityError, strength};
+use crate::scene::{PolygonId, Scene};
+use glam::DVec3;
+use rustc_hash::FxHashMap;
+
+/// For every patch, whether radiosities gathered at its corners and in its middle differ by more than that part of their mean, or of the mean of what all
+/// patches reflect if that is larger (by the color channel in which they differ most). Such patches are to be halved ([`PatchMesh::halved`](crate::factors::PatchMesh::halved)).
+///
+/// The scene is that of the patches; corners are shared by patches of one region ([`PatchMesh::regions`](crate::factors::PatchMesh::regions)). The cost is a view for
+/// every corner and every patch that reflects. Corners are taken a thousandth of the way inside, and left out where they are covered.
+///
+/// # Errors
+/// If there is no view from some point.
+///
+/// # Panics
+/// If `regions` does not name one for every patch.
+pub fn uneven_patches(
+    patches: &Scene,
+    regions: &[PolygonId],
+    gather: &Gather<'_>,
+    part: f64,
+) -> Result<Vec<bool>, RadiosityError> {
+    let mut numbers: FxHashMap<(PolygonId, [u64; 3]), usize> = FxHashMap::default();
+    let mut places = Vec::new();
+    let mut places_of = vec![Vec::new(); patches.polygon_count()];
+    for patch in patches.polygons().filter(|patch| gather.reflected(patch.id().index()).is_some()) {
+        let own = &mut places_of[patch.id().index()];
+        for piece in patch.pieces() {
+            let ring: Vec<DVec3> = piece.points().collect();
+            let middle = ring.iter().sum::<DVec3>() / ring.len() as f64;
+            for &corner in &ring {
+                let key = (regions[patch.id().index()], corner.to_array().map(f64::to_bits));
+                own.push(*numbers.entry(key).or_insert_with(|| {
+                    places.push((patch.id(), corner.lerp(middle, INSIDE)));
+                    places.len() - 1
+                }));
+            }
+            own.push(places.len());
+            places.push((patch.id(), middle));
+        }
+    }
+    let found = gather.uncovered_at_all(places, &|_| ())?;
+    let mean = mean_reflected(gather);
+    let is_uneven = |(patch, places): (usize, Vec<usize>)| {
+        let emission = gather.emission(PolygonId(patch as u32));
+        let reflected: Vec<DVec3> = places.iter().filter_map(|&k| found[k]).map(|b| b - emission).collect();
+        let Some(&first) = reflected.first() else { return false };
+        let (low, high) = reflected.iter().fold((first, first), |(low, high), &b| (low.min(b), high.max(b)));
+        let own = reflected.iter().sum::<DVec3>() / reflected.len() as f64;
+        3.0 * (high - low).max_element() > part * strength(own).max(mean)
+    };
+    Ok(places_of.into_iter().enumerate().map(is_uneven).collect())
+}
+
+/// The mean of what is reflected over the area of all patches that reflect.
+fn mean_reflected(gather: &Gather<'_>) -> f64 {
+    let (mut power, mut area) = (0.0, 0.0);
+    for (patch, info) in gather.exchange().patches().iter().enumerate() {
+        if let Some(reflected) = gather.reflected(patch) {
+            power += info.area * strength(reflected).max(0.0);
+            area += info.area;
+        }
+    }
+    if area > 0.0 { power / area } else { 0.0 }
+}
