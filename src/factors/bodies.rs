@@ -190,3 +190,76 @@ fn loop_of(first: u32, after: &HashMap<u32, u32>) -> Option<Vec<u32>> {
         ring.push(next);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::facets::Facets;
+    use super::*;
+    use crate::scene::{Material, Scene};
+
+    /// The faces of a box from 0 to 1, z scaled, without the one whose number is given: bottom, top, then sides.
+    fn cube(height: f64, without: Option<usize>) -> Vec<Vec<DVec3>> {
+        let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, height * z);
+        let faces = [
+            [at(0., 0., 0.), at(0., 1., 0.), at(1., 1., 0.), at(1., 0., 0.)],
+            [at(0., 0., 1.), at(1., 0., 1.), at(1., 1., 1.), at(0., 1., 1.)],
+            [at(0., 0., 0.), at(1., 0., 0.), at(1., 0., 1.), at(0., 0., 1.)],
+            [at(1., 0., 0.), at(1., 1., 0.), at(1., 1., 1.), at(1., 0., 1.)],
+            [at(1., 1., 0.), at(0., 1., 0.), at(0., 1., 1.), at(1., 1., 1.)],
+            [at(0., 1., 0.), at(0., 0., 0.), at(0., 0., 1.), at(0., 1., 1.)],
+        ];
+        (0..6).filter(|&k| Some(k) != without).map(|k| faces[k].to_vec()).collect()
+    }
+
+    fn bodies(faces: &[Vec<DVec3>]) -> Bodies {
+        let (mut vertices, mut rings) = (Vec::new(), Vec::new());
+        for face in faces {
+            rings.push((vertices.len()..vertices.len() + face.len()).collect::<Vec<_>>());
+            vertices.extend(face.iter().map(DVec3::to_array));
+        }
+        let scene = Scene::builder().mesh(&vertices, &rings, Material::new("m")).build().unwrap();
+        Facets::of(&scene).unwrap().bodies
+    }
+
+    #[test]
+    fn boxes_are_bodies_closed_or_without_one_face() {
+        let closed = bodies(&cube(2.0, None));
+        assert_eq!((closed.all.len(), closed.all[0].facets.len(), closed.all[0].edges.len()), (1, 6, 12));
+        assert!(closed.all[0].lacks.is_none());
+        let open = bodies(&cube(2.0, Some(0)));
+        let [body] = &open.all[..] else { panic!("{} bodies", open.all.len()) };
+        assert_eq!((body.facets.len(), body.edges.len()), (5, 12));
+        // Its bottom, seen from below.
+        let [a, b, c] = body.lacks.unwrap();
+        assert!((b - a).cross(c - a).z < 0.0 && [a, b, c].iter().all(|p| p.z.abs() <= 0.0));
+        assert_eq!(open.of_facet, [Some(0); 5]);
+    }
+
+    #[test]
+    fn sides_have_one_name_in_both_facets() {
+        let closed = bodies(&cube(1.0, None));
+        let mut names: Vec<FacetSide> =
+            (0..6).flat_map(|facet| (0..4).map(move |k| (facet, k))).map(|(facet, k)| closed.side(facet, k)).collect();
+        names.sort_unstable();
+        let all = names.len();
+        names.dedup();
+        assert_eq!((all, names.len()), (24, 12));
+    }
+
+    #[test]
+    fn what_shows_its_inside_or_is_not_convex_is_none() {
+        // Two faces are missing; all are turned around; a pit is part of no body, and that around it is one from where the pit is not seen.
+        let two: Vec<_> = cube(1.0, Some(0)).into_iter().skip(1).collect();
+        assert!(bodies(&two).all.is_empty());
+        let turned: Vec<_> = cube(1.0, None).into_iter().map(|face| face.into_iter().rev().collect()).collect();
+        assert!(bodies(&turned).all.is_empty());
+        let mut dented = cube(1.0, Some(1));
+        let top = [[0., 0., 1.], [1., 0., 1.], [1., 1., 1.], [0., 1., 1.]].map(DVec3::from);
+        let pit = DVec3::new(0.5, 0.5, 0.5);
+        dented.extend((0..4).map(|k| vec![top[k], top[(k + 1) % 4], pit]));
+        let dented = bodies(&dented);
+        assert_eq!(dented.all.len(), 1);
+        assert_eq!(dented.of_facet, [[Some(0); 5].as_slice(), &[None; 4]].concat());
+        assert!(dented.all[0].lacks.is_some_and(|face| face.iter().all(|p| p.z >= 1.0)));
+    }
+}

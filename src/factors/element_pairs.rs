@@ -14,7 +14,7 @@ use glam::DVec3;
 use std::ops::Range;
 
 /// With more facets between than this, views are cheaper than cutting off shadows one by one.
-const MOST_BETWEEN: usize = 64;
+const MOST_BETWEEN: usize = 4096;
 impl ElementRows<'_> {
     /// Integrates all patches of which all that may hide parts of them is known.
     pub(super) fn integrate_all(&self, number: u32, effort: Effort, space: &mut RowSpace) {

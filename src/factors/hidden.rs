@@ -123,7 +123,13 @@ fn cut_off_shadows(at: DVec3, space: &mut HiddenSpace) -> bool {
         if !screens.shadow(*screen, at, line, parts, lines) {
             continue;
         }
+        // Of one part it is known already that no line has all of it outside.
+        let is_one = parts.len() == 1;
         for part in parts.drain(..) {
+            if !is_one && lines.iter().any(|(line, _)| part.iter().all(|&p| line.height(p) <= 0.0)) {
+                next.push(part);
+                continue;
+            }
             cut_off(part, lines, next, free, heights, |cut| {
                 if bounds.is_some() {
                     cuts.push(cut);
@@ -157,10 +163,6 @@ fn cut_off(
     heights: &mut Vec<f64>,
     mut cut: impl FnMut((HalfPlane, FacetSide)),
 ) {
-    if lines.iter().any(|(line, _)| part.iter().all(|&p| line.height(p) <= 0.0)) {
-        next.push(part);
-        return;
-    }
     for (line, side) in lines {
         heights.clear();
         heights.extend(part.iter().map(|&p| line.height(p)));
