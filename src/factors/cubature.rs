@@ -69,8 +69,8 @@ impl Outer {
 
     /// True if there is something to look for beside the side or the corner of a sum.
     fn looks(self, sum: usize) -> bool {
-        let Self { low, high } = self;
         const SIDES_OF: [[usize; 2]; 8] = [[0, 0], [1, 1], [2, 2], [3, 3], [0, 2], [1, 3], [0, 3], [1, 2]];
+        let Self { low, high } = self;
         let sides = [low[0], high[0], low[1], high[1]];
         SIDES_OF[sum - SIDES].iter().all(|&side| sides[side])
     }
