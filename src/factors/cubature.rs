@@ -155,7 +155,12 @@ pub(super) struct Sample {
     pub(super) error: f64,
     /// True if the quadrilateral is to be halved across its first side.
     pub(super) halve_first: bool,
+    /// True if it changes about as much across both.
+    pub(super) is_even: bool,
 }
+
+/// Differences along both sides are about as large if neither is below this part of the other.
+const EVEN: f64 = 0.25;
 
 impl Rule {
     /// How many points it takes.
@@ -181,8 +186,10 @@ impl Rule {
             sums.iter_mut().zip(weights).for_each(|(sum, weight)| *sum += weight * value);
         }
         (SIDES..SUMS).filter(|&sum| !outer.looks(sum)).for_each(|sum| sums[sum] = 0.0);
-        let halve_first = halves_first(corners, [sums[4].abs(), sums[5].abs()]);
-        Sample { value: sums[0], error: estimate(&sums), halve_first }
+        let [first, second] = [sums[4].abs(), sums[5].abs()];
+        let halve_first = halves_first(corners, [first, second]);
+        let is_even = first.min(second) >= EVEN * first.max(second);
+        Sample { value: sums[0], error: estimate(&sums), halve_first, is_even }
     }
 }
 

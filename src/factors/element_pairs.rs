@@ -13,8 +13,9 @@ use super::{Sides, contour, pair};
 use glam::DVec3;
 use std::ops::Range;
 
-/// With more facets between than this, views are cheaper than cutting off shadows one by one.
+/// With more facets between than this views are taken.
 const MOST_BETWEEN: usize = 4096;
+
 impl ElementRows<'_> {
     /// Integrates all patches of which all that may hide parts of them is known.
     pub(super) fn integrate_all(&self, number: u32, effort: Effort, space: &mut RowSpace) {

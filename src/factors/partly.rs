@@ -23,13 +23,16 @@ const SMALL: f64 = 8.0;
 const OF_FEW: f64 = 0.1;
 /// The part of it which a shadow is taken to cover that none of many points has seen.
 const OF_MANY: f64 = 0.015;
-/// The part of their estimates that parts of divided elements are wrong by; their sum is taken to be no more than so many times the root of the sum of their squares,
-/// as errors have both signs. Chosen by dense cities, too: in rows of them estimates were ten times too large, in the middle, without.
+/// The part of their estimates that parts of divided elements are wrong by; chosen by dense cities, too: in rows of them estimates were ten times too large, in the middle, without.
 const OF_PARTS: f64 = 0.7;
+/// Errors have both signs: their sum is taken to be so many times the root of the sum of their squares, and no less than this part of the sum of their sizes, as parts along a
+/// shadow's edge that runs as their sides do are all wrong alike.
 const OF_ROOT: f64 = 2.0;
-/// As long as so many times what is allowed is left, parts are quartered that are wrong by this part of it.
+const OF_SUM: f64 = 0.4;
+/// As long as so many times what is allowed is left, parts are quartered that are wrong by this part of it; after so many points only those that change across both sides.
 const FAR: f64 = 3.0;
 const OF_ALLOWED: f64 = 0.1;
+const BEGUN: usize = 1000;
 
 /// Two elements with what is between them.
 pub(super) struct Partly<'a> {
@@ -81,18 +84,21 @@ impl Partly<'_> {
         if OF_MANY * at_most + quads.error() > allowed && self.look_back(known, back) {
             quads.worsen(OF_MANY * at_most);
         }
-        let mut points = quads.waiting.len() * many.count();
+        let mut points = quads.count * many.count();
         while quads.error() > allowed && points < most {
             let is_far = quads.error() > FAR * allowed;
             let Some(worst) = quads.pop() else { break };
             let mut parts = worst.part.halves(worst.sample.halve_first).to_vec();
-            if is_far && worst.error() > OF_ALLOWED * allowed {
+            let is_begun = points < BEGUN;
+            if is_far && (is_begun || worst.sample.is_even) && worst.error() > OF_ALLOWED * allowed {
                 parts = parts.iter().flat_map(|half| half.halves(!worst.sample.halve_first)).collect();
             }
+            // Of what may have been missed they have as much less as they are smaller, and each its part; in the end a shadow is seen or too small to look for.
+            let missed = if is_begun { worst.missed / (parts.len() * parts.len()) as f64 } else { 0.0 };
             for part in parts {
                 points += many.count();
                 let sample = many.sample(part.corners, part.outer, self.from.area, |point| target.factor(point, there));
-                quads.add(part, Sample { error: OF_PARTS * sample.error, ..sample });
+                quads.add(part, Sample { error: OF_PARTS * sample.error, ..sample }, missed);
             }
         }
         quads.total(at_most)
@@ -105,7 +111,7 @@ impl Partly<'_> {
             for quad in quads(ring.len()) {
                 let part = Part { corners: quad.map(|k| ring[k]), outer: Outer::ALL };
                 let sample = rule.sample(part.corners, part.outer, self.from.area, |point| target.factor(point, space));
-                all.add(part, sample);
+                all.add(part, sample, 0.0);
             }
         }
         all
@@ -186,11 +192,12 @@ struct Quads {
 }
 
 impl Quads {
-    fn add(&mut self, part: Part, sample: Sample) {
+    fn add(&mut self, part: Part, sample: Sample, missed: f64) {
         self.count += 1;
         self.error += sample.error;
         self.squares += sample.error * sample.error;
-        self.waiting.push(Quad { part, sample, missed: 0.0, number: self.count });
+        self.missed += missed;
+        self.waiting.push(Quad { part, sample, missed, number: self.count });
     }
 
     /// Takes out the one with the largest estimate.
@@ -212,7 +219,8 @@ impl Quads {
 
     /// An estimate of the error of the sum.
     fn error(&self) -> f64 {
-        self.error.max(0.0).min(OF_ROOT * self.squares.max(0.0).sqrt()) + self.missed
+        let both_signs = (OF_ROOT * self.squares.max(0.0).sqrt()).max(OF_SUM * self.error);
+        self.error.min(both_signs).max(0.0) + self.missed.max(0.0)
     }
 
     /// The integral, of a factor that is nowhere larger than this with nothing between.
