@@ -56,6 +56,12 @@ pub enum ExchangeError {
         /// Why.
         problem: String,
     },
+    /// Views show too many pairs of patches.
+    #[error("more than {limit} pairs of patches see each other; take a longer edge for patches")]
+    TooManyFactors {
+        /// How many are allowed.
+        limit: usize,
+    },
     /// What a row lacks is more than the estimates of its errors.
     #[error(
         "row {patch} sums to 1 only up to {residue:e}, and estimates of its errors explain {estimates:e}; ask for a smaller tolerance"

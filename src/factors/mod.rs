@@ -41,6 +41,7 @@ mod shaft;
 mod shape;
 mod shared;
 mod tree;
+mod viewed;
 
 pub use error::ExchangeError;
 pub use exchange::Exchange;
@@ -52,3 +53,4 @@ pub(crate) use received::Receivers;
 pub use reciprocity::{Reciprocal, ReciprocityError, make_reciprocal};
 pub use row::{Entry, PatchInfo, PatchShape, Row, Share};
 pub use rows_once::RowsOnce;
+pub use viewed::ViewedRows;

@@ -90,20 +90,7 @@ impl<'a> Solver<'a> {
     /// # Errors
     /// If a material has no reflectance ([`Material::reflectances`](crate::scene::Material::reflectances)), or if nothing emits.
     pub fn new(scene: &Scene, exchange: &'a Exchange, options: SolverOptions) -> Result<Self, RadiosityError> {
-        let (mut emission, mut reflectance) = (Vec::new(), Vec::new());
-        for PatchInfo { polygon, .. } in exchange.patches() {
-            let material = scene.polygon(*polygon).material();
-            let [matt, _] = material.reflectances().map_err(|source| {
-                let (polygon, material) = (*polygon, material.name.clone());
-                RadiosityError::BadMaterial { polygon, material, source }
-            })?;
-            emission.push(DVec3::from(material.emission) * PI);
-            reflectance.push(matt);
-        }
-        let areas = exchange.patches().iter().map(|patch| patch.area);
-        if !emission.iter().zip(areas).any(|(&emission, area)| strength(emission) * area > 0.0) {
-            return Err(RadiosityError::Dark);
-        }
+        let (emission, reflectance) = surfaces(scene, exchange)?;
         let state = SolverState { radiosity: emission.clone(), unshot: emission.clone(), ..SolverState::default() };
         let rows = vec![None; emission.len()];
         let source = RowsOnce::new(exchange);
@@ -337,4 +324,23 @@ impl<'a> Solver<'a> {
         }
         Ok(())
     }
+}
+
+/// What each patch emits, and what part it reflects.
+pub(super) fn surfaces(scene: &Scene, exchange: &Exchange) -> Result<(Vec<DVec3>, Vec<DVec3>), RadiosityError> {
+    let (mut emission, mut reflectance) = (Vec::new(), Vec::new());
+    for PatchInfo { polygon, .. } in exchange.patches() {
+        let material = scene.polygon(*polygon).material();
+        let [matt, _] = material.reflectances().map_err(|source| {
+            let (polygon, material) = (*polygon, material.name.clone());
+            RadiosityError::BadMaterial { polygon, material, source }
+        })?;
+        emission.push(DVec3::from(material.emission) * PI);
+        reflectance.push(matt);
+    }
+    let areas = exchange.patches().iter().map(|patch| patch.area);
+    if !emission.iter().zip(areas).any(|(&emission, area)| strength(emission) * area > 0.0) {
+        return Err(RadiosityError::Dark);
+    }
+    Ok((emission, reflectance))
 }
