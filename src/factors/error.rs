@@ -57,7 +57,9 @@ pub enum ExchangeError {
         problem: String,
     },
     /// Views show too many pairs of patches.
-    #[error("more than {limit} pairs of patches see each other; take a longer edge for patches")]
+    #[error(
+        "views show more than {limit} factors between patches; take a longer edge, or a tolerance, to which rows are computed one by one"
+    )]
     TooManyFactors {
         /// How many are allowed.
         limit: usize,

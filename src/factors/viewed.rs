@@ -102,16 +102,16 @@ impl Exchange {
             if entries > most_entries { Err(ExchangeError::TooManyFactors { limit: most_entries }) } else { Ok(()) }
         })?;
         let views = all.iter().map(|seen| seen.views).sum();
-        let mut rows = if self.options.sides == Sides::Fronts { self.met_halfway(&all) } else { one_sided(&all) };
-        let mut starts = vec![0];
-        for (row, seen) in rows.iter_mut().zip(&all) {
-            let sum = row.iter().map(|entry| entry.1).sum::<f64>() + seen.lost;
-            if sum > 0.0 {
-                row.iter_mut().for_each(|entry| entry.1 /= sum);
-            }
-            starts.push(starts[starts.len() - 1] + row.len());
+        let lost: Vec<f64> = all.iter().map(|seen| seen.lost).collect();
+        let rows = if self.options.sides == Sides::Fronts { self.met_halfway(&all) } else { one_sided(&all) };
+        drop(all);
+        let mut found = ViewedRows { starts: vec![0], entries: Vec::with_capacity(entries), views };
+        for (row, lost) in rows.into_iter().zip(lost) {
+            let sum = row.iter().map(|entry| entry.1).sum::<f64>() + lost;
+            found.entries.extend(row.into_iter().map(|(column, factor)| (column, factor / sum)));
+            found.starts.push(found.entries.len());
         }
-        Ok(ViewedRows { starts, entries: rows.concat(), views })
+        Ok(found)
     }
 
     fn seen_from(&self, patch: usize, spacing: f64, space: &mut Space) -> Result<Seen, ExchangeError> {

@@ -9,11 +9,14 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// there would not be seen.
 pub(super) const INSIDE: f64 = 1e-3;
 
+/// Between ends that differ by more than so many times what a middle may be off, a middle on their line may be chance, as between the foot of a leg and the border of a shadow: such edges are halved as well.
+const STEEP: f64 = 8.0;
+
 /// How fine a surface is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceOptions {
     /// An edge is halved if the radiosity in its middle differs from what its ends say by more than this part of it, or of the mean of all surfaces if that
-    /// is larger.
+    /// is larger; also if its ends differ by more than eight times that.
     pub detail: f64,
     /// How often at most an edge of a patch is halved: 0 for the patches as they are.
     pub depth: u32,
@@ -176,16 +179,12 @@ impl Surface {
             let [p, q] = edge.map(|corner| self.radiosity[corner as usize]);
             let off = (radiosity - p.midpoint(q)).abs().max_element() * 3.0;
             let allowed = options.detail * strength(radiosity).max(mean);
-            if off <= allowed {
+            let apart = (p - q).abs().max_element() * 3.0;
+            if off <= allowed && apart <= STEEP * allowed {
                 accepted.insert(edge);
                 continue;
             }
-            let number = self.positions.len() as u32;
-            // A kink's deviation is half as much along half an edge, and that of a curve is a quarter.
-            if off <= 2.0 * allowed {
-                accepted.extend(edge.map(|corner| [corner, number]));
-            }
-            halves.insert(edge, number);
+            halves.insert(edge, self.positions.len() as u32);
             self.positions.push(position);
             self.radiosity.push(radiosity);
             is_covered.push(uncovered.is_none());

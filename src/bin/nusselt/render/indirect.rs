@@ -48,7 +48,8 @@ pub(super) struct Interreflection {
 #[derive(Default)]
 pub(super) struct Solved {
     pub(super) patches: usize,
-    pub(super) rounds: usize,
+    pub(super) shots: usize,
+    pub(super) bounces: usize,
     pub(super) corners: usize,
     pub(super) solve_s: f64,
     pub(super) surface_s: f64,
@@ -113,7 +114,8 @@ impl Interreflection {
         }
         let solved = Solved {
             patches: patches.polygon_count(),
-            rounds: solution.rounds,
+            shots: solution.shots,
+            bounces: solution.bounces,
             corners: indirect.corner_count(),
             solve_s,
             surface_s: start.elapsed().as_secs_f64(),
@@ -129,10 +131,12 @@ impl Interreflection {
         longest: f64,
         common: &Common,
     ) -> Result<Solution, RadiosityError> {
+        // What has no solution is not looked at.
+        Solver::new(scene, exchange, SolverOptions::default())?;
         let progress = SharedProgress::new("rows", Some(exchange.patches().len()), common.quiet);
         let rows = exchange.viewed_rows(0.5 * longest, MOST_FACTORS, &|count| progress.add(count))?;
         let Gathered { emission, radiosity, bounces } = Gathered::new(scene, exchange, &rows, self.until)?;
-        Ok(Solution { emission, radiosity, rounds: bounces })
+        Ok(Solution { emission, radiosity, shots: 0, bounces })
     }
 
     fn by_shooting(&self, scene: &Scene, exchange: &Exchange, common: &Common) -> Result<Solution, RadiosityError> {
@@ -146,13 +150,14 @@ impl Interreflection {
             true
         })?;
         let [emission, radiosity] = [solver.emission(), solver.radiosity()].map(<[DVec3]>::to_vec);
-        Ok(Solution { emission, radiosity, rounds: shots })
+        Ok(Solution { emission, radiosity, shots, bounces: 0 })
     }
 }
 
-/// The radiosity of patches, and how many times it took shots, or bounces.
+/// The radiosity of patches, and how many shots it took, or how many bounces.
 struct Solution {
     emission: Vec<DVec3>,
     radiosity: Vec<DVec3>,
-    rounds: usize,
+    shots: usize,
+    bounces: usize,
 }
