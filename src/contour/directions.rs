@@ -20,14 +20,19 @@ pub(crate) struct CircleId(pub(crate) u32);
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct DirectionId(pub(crate) u32);
 
+/// A vector of a view that is not the scene's. There are few of them, and as many definitions as lines and corners are seen: so
+/// those are kept small.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct VectorId(u32);
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum CircleDef {
     Line(LineId),
     /// Where two planes of the scene meet, in the order of their numbers.
     Crease([PlaneId; 2]),
     /// Through two points that are not the scene's.
-    Points([DVec3; 2]),
-    Given(DVec3),
+    Points([VectorId; 2]),
+    Given(VectorId),
     Parallel(PlaneId),
 }
 
@@ -50,7 +55,7 @@ enum DirectionDef {
     /// From the eye to a point.
     Point(PointId),
     /// From the eye to a point that is not the scene's.
-    Towards(DVec3),
+    Towards(VectorId),
     /// `n_1 x n_2`, or its opposite.
     Crossing { circles: [CircleId; 2], reversed: bool },
 }
@@ -83,6 +88,7 @@ pub(crate) struct Directions {
     /// The directions that were kept: their definitions, and apart, as nearly all questions need only them, their approximations.
     definitions: Vec<DirectionDef>,
     approximations: Vec<Approx3>,
+    vectors: Vec<DVec3>,
 }
 
 /// Integers that were needed once and may be needed again.
@@ -147,15 +153,26 @@ impl Directions {
                 zeros: Vec::new(),
                 definitions: Vec::new(),
                 approximations: Vec::new(),
+                vectors: Vec::new(),
             };
         };
-        let Self { mut circles, mut normals, mut zeros, mut definitions, mut approximations, .. } = former;
+        let Self { mut circles, mut normals, mut zeros, mut definitions, mut approximations, mut vectors, .. } = former;
         circles.clear();
         normals.clear();
         zeros.clear();
         definitions.clear();
         approximations.clear();
-        Self { eye, frame, circles, normals, zeros, definitions, approximations }
+        vectors.clear();
+        Self { eye, frame, circles, normals, zeros, definitions, approximations, vectors }
+    }
+
+    fn push_vector(&mut self, vector: DVec3) -> VectorId {
+        self.vectors.push(vector);
+        VectorId(self.vectors.len() as u32 - 1)
+    }
+
+    fn vector(&self, vector: VectorId) -> DVec3 {
+        self.vectors[vector.0 as usize]
     }
 
     fn push_circle(
@@ -189,11 +206,14 @@ impl Directions {
 
     /// The great circle through two points that are not the scene's, but on the grid.
     pub(crate) fn push_points(&mut self, skeleton: &Skeleton, ends: [DVec3; 2], cache: &mut ExactCache) -> CircleId {
-        self.push_circle(skeleton, CircleDef::Points(ends), Approx3::edge_normal(self.eye, ends[0], ends[1]), cache)
+        let normal = Approx3::edge_normal(self.eye, ends[0], ends[1]);
+        let ends = ends.map(|end| self.push_vector(end));
+        self.push_circle(skeleton, CircleDef::Points(ends), normal, cache)
     }
 
     pub(crate) fn push_given(&mut self, skeleton: &Skeleton, normal: DVec3, cache: &mut ExactCache) -> CircleId {
-        self.push_circle(skeleton, CircleDef::Given(normal), Approx3::given(normal), cache)
+        let vector = self.push_vector(normal);
+        self.push_circle(skeleton, CircleDef::Given(vector), Approx3::given(normal), cache)
     }
 
     pub(crate) fn push_parallel(&mut self, skeleton: &Skeleton, plane: PlaneId, cache: &mut ExactCache) -> CircleId {
@@ -221,7 +241,7 @@ impl Directions {
                 cache.arena.kept_rounded(&exact)
             }
             DirectionDef::Towards(point) => {
-                let exact = self.exact_towards(point, cache);
+                let exact = self.exact_towards(self.vector(point), cache);
                 cache.arena.kept_rounded(&exact)
             }
             DirectionDef::Crossing { circles, reversed } => {
@@ -242,7 +262,7 @@ impl Directions {
     /// From the eye to a point that is not the scene's, but on the grid.
     pub(crate) fn push_towards(&mut self, skeleton: &Skeleton, point: DVec3, cache: &mut ExactCache) -> DirectionId {
         let approx = Approx3::direction(self.eye, point, 0.0);
-        let definition = DirectionDef::Towards(point);
+        let definition = DirectionDef::Towards(self.push_vector(point));
         let approx = self.refined(skeleton, definition, approx, cache);
         self.push(definition, approx)
     }
@@ -336,7 +356,7 @@ impl Directions {
                 cache.decide(|arena| arena.kept_dot_sign(&normal, &direction))
             }
             DirectionDef::Towards(point) => {
-                let direction = self.exact_towards(point, cache);
+                let direction = self.exact_towards(self.vector(point), cache);
                 cache.decide(|arena| arena.kept_dot_sign(&normal, &direction))
             }
         }
@@ -347,7 +367,11 @@ impl Directions {
         match (d, self.circles[c.0 as usize]) {
             (DirectionDef::Crossing { circles, .. }, _) if circles.contains(&c) => true,
             (DirectionDef::Point(point), CircleDef::Line(line)) if skeleton.known_on_line(point, line) => true,
-            (DirectionDef::Towards(point), CircleDef::Points(ends)) if ends.contains(&point) => true,
+            (DirectionDef::Towards(point), CircleDef::Points(ends))
+                if ends.iter().any(|&end| self.vector(end) == self.vector(point)) =>
+            {
+                true
+            }
             (DirectionDef::Crossing { circles: [m, n], .. }, _) => {
                 ZeroComponents::shared([c, m, n].map(|circle| self.zeros[circle.0 as usize]))
             }
@@ -356,7 +380,7 @@ impl Directions {
                 ZeroComponents::of_point(&point, self.eye).cover(self.zeros[c.0 as usize])
             }
             (DirectionDef::Towards(point), _) => {
-                ZeroComponents::of_point(&exact::Point::Given(point), self.eye).cover(self.zeros[c.0 as usize])
+                ZeroComponents::of_point(&exact::Point::Given(self.vector(point)), self.eye).cover(self.zeros[c.0 as usize])
             }
         }
     }
@@ -366,8 +390,8 @@ impl Directions {
         match self.circles[c.0 as usize] {
             CircleDef::Line(line) => skeleton.resolved_line(line),
             CircleDef::Crease(planes) => exact::Splitter::Crease(planes.map(|p| skeleton.resolved_plane(p))),
-            CircleDef::Points(ends) => exact::Splitter::Edge(ends),
-            CircleDef::Given(normal) => exact::Splitter::Given(normal),
+            CircleDef::Points(ends) => exact::Splitter::Edge(ends.map(|end| self.vector(end))),
+            CircleDef::Given(normal) => exact::Splitter::Given(self.vector(normal)),
             CircleDef::Parallel(plane) => exact::Splitter::Parallel(skeleton.resolved_plane(plane)),
         }
     }
@@ -449,7 +473,7 @@ impl Directions {
     ) -> DVec3 {
         let [x, m, n] = match self.definitions[d.0 as usize] {
             DirectionDef::Point(point) => [Some(self.exact_point(skeleton, point, cache)), None, None],
-            DirectionDef::Towards(point) => [Some(self.exact_towards(point, cache)), None, None],
+            DirectionDef::Towards(point) => [Some(self.exact_towards(self.vector(point), cache)), None, None],
             DirectionDef::Crossing { circles: [m, n], reversed } => {
                 let [m, n] = if reversed { [n, m] } else { [m, n] };
                 [None, Some(self.exact_normal(skeleton, m, cache)), Some(self.exact_normal(skeleton, n, cache))]
@@ -552,8 +576,8 @@ impl Directions {
                 LineDef::Crease(planes) => Splitter::Crease(planes.map(|p| skeleton.plane(p))),
             },
             CircleDef::Crease(planes) => Splitter::Crease(planes.map(|p| skeleton.plane(p))),
-            CircleDef::Points(ends) => Splitter::Points(ends),
-            CircleDef::Given(normal) => Splitter::Given(normal),
+            CircleDef::Points(ends) => Splitter::Points(ends.map(|end| self.vector(end))),
+            CircleDef::Given(normal) => Splitter::Given(self.vector(normal)),
             CircleDef::Parallel(plane) => Splitter::Parallel(skeleton.plane(plane)),
         }
     }

@@ -18,9 +18,12 @@ impl Directions {
                     cache.arena.kept_sum(&exact)
                 }
             },
-            DirectionDef::Towards(p) if is_moderate(p - self.eye) => halves(&difference(p, self.eye)),
-            DirectionDef::Towards(p) => {
-                let exact = self.exact_towards(p, cache);
+            DirectionDef::Towards(point) => {
+                let point = self.vector(point);
+                if is_moderate(point - self.eye) {
+                    return halves(&difference(point, self.eye));
+                }
+                let exact = self.exact_towards(point, cache);
                 cache.arena.kept_sum(&exact)
             }
             DirectionDef::Crossing { circles, reversed } => {
