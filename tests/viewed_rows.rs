@@ -41,9 +41,13 @@ fn rows_come_near_integrals_and_nearer_with_more_views() {
         for patch in (0..mesh.len()).step_by(11) {
             let row = exact.row(patch).expect("a row");
             let mut off = vec![0.0; mesh.len()];
-            row.entries.iter().for_each(|entry| off[entry.column as usize] = entry.share.factor);
+            for entry in &row.entries {
+                off[entry.column as usize] = entry.share.factor;
+            }
             let found = rows.row(patch);
-            found.iter().for_each(|&(column, factor)| off[column as usize] -= factor);
+            for &(column, factor) in found {
+                off[column as usize] -= factor;
+            }
             let area = exact.patches()[patch].area;
             sum += area * off.iter().map(|off| off.abs()).sum::<f64>();
             areas += area;

@@ -178,7 +178,9 @@ impl Exchange {
                 }
             }
         }
-        rows.iter_mut().for_each(|row| row.sort_unstable_by_key(|entry| entry.0));
+        for row in &mut rows {
+            row.sort_unstable_by_key(|entry| entry.0);
+        }
         rows
     }
 }

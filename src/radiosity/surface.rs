@@ -47,6 +47,16 @@ pub struct Surface {
     pub patches: Vec<PolygonId>,
 }
 
+/// What radiosities along edges are compared with.
+struct Light<'a> {
+    gather: &'a Gather<'a>,
+    options: &'a SurfaceOptions,
+    mean: f64,
+    /// The radiosities of the middles of edges that have been found before; none where nothing but backs is seen.
+    known: FxHashMap<[u32; 2], Option<DVec3>>,
+    done: &'a (dyn Fn(usize) + Sync),
+}
+
 impl Surface {
     /// Makes the surface of a scene of patches, of which patch k is part of polygon `of[k]`: corners of patches first, then middles of edges as long as radiosities change quickly
     /// along them. The cost is that of a view for every patch, every corner and every edge.
@@ -117,9 +127,10 @@ impl Surface {
         let radiosity = found.into_iter().zip(patches).map(|(b, patch)| b.unwrap_or(gather.emission(patch)));
         surface.radiosity = radiosity.collect();
         let mean = surface.mean(gather);
+        let light = Light { gather, options, mean, known, done };
         let mut accepted: FxHashSet<[u32; 2]> = FxHashSet::default();
         for _ in 0..options.depth {
-            if !surface.refine(gather, options, mean, &known, &mut accepted, &mut is_covered, done)? {
+            if !surface.refine(&light, &mut accepted, &mut is_covered)? {
                 break;
             }
         }
@@ -148,14 +159,11 @@ impl Surface {
     /// Halves edges that need it; false if none does.
     fn refine(
         &mut self,
-        gather: &Gather<'_>,
-        options: &SurfaceOptions,
-        mean: f64,
-        known: &FxHashMap<[u32; 2], Option<DVec3>>,
+        light: &Light<'_>,
         accepted: &mut FxHashSet<[u32; 2]>,
         is_covered: &mut Vec<bool>,
-        done: &(dyn Fn(usize) + Sync),
     ) -> Result<bool, RadiosityError> {
+        let Light { gather, options, mean, known, done } = light;
         let mut asked: FxHashSet<[u32; 2]> = FxHashSet::default();
         let (mut edges, mut places) = (Vec::new(), Vec::new());
         for (triangle, &patch) in self.triangles.iter().zip(&self.patches) {
@@ -178,7 +186,7 @@ impl Surface {
             let radiosity = uncovered.unwrap_or(gather.emission(patch));
             let [p, q] = edge.map(|corner| self.radiosity[corner as usize]);
             let off = (radiosity - p.midpoint(q)).abs().max_element() * 3.0;
-            let allowed = options.detail * strength(radiosity).max(mean);
+            let allowed = options.detail * strength(radiosity).max(*mean);
             let apart = (p - q).abs().max_element() * 3.0;
             if off <= allowed && apart <= STEEP * allowed {
                 accepted.insert(edge);
