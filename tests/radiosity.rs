@@ -430,14 +430,23 @@ fn what_cannot_be_solved_is_refused() {
     let bad = Material { metallic_roughness: Some(surface), ..material(1.5, 0.0) };
     assert!(matches!(made(bad, material(0.5, 1.0)), Err(RadiosityError::BadMaterial { polygon: PolygonId(0), .. })));
     assert!(matches!(made(material(0.5, 0.0), material(0.5, 0.0)), Err(RadiosityError::Dark)));
+    // What is emitted, a product with pi or with an area, or a sum of these may be too large.
+    for bright in [1e308, 5e307, 1e303] {
+        let refused = made(material(0.5, 0.0), material(0.5, bright));
+        assert!(matches!(refused, Err(RadiosityError::TooBright { polygon: PolygonId(5) })), "{bright:e}: {refused:?}");
+    }
+    let all = made(material(0.5, 1e300), material(0.5, 1e300));
+    assert_eq!(all, Ok(6), "numbers hold that");
     let scene = hollow(material(1.0, 0.0), material(1.0, 1.0));
     let exchange = exchange(&scene, 1e-2);
     let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
     assert!(matches!(solver.solve(1e-3, |_| true), Err(RadiosityError::Endless { .. })));
     let other = SolverState { radiosity: vec![DVec3::ONE], ..SolverState::default() };
     assert!(matches!(solver.resume(other), Err(RadiosityError::OtherState { found: 1, expected: 6 })));
-    let bad = SolverState { radiosity: vec![DVec3::NAN; 6], unshot: vec![DVec3::ONE; 6], ..SolverState::default() };
-    assert!(matches!(solver.resume(bad), Err(RadiosityError::BadState { patch: 0 })));
+    for bad in [DVec3::NAN, DVec3::splat(1e307)] {
+        let bad = SolverState { radiosity: vec![bad; 6], unshot: vec![DVec3::ONE; 6], ..SolverState::default() };
+        assert!(matches!(solver.resume(bad), Err(RadiosityError::BadState { patch: 0 })));
+    }
 }
 
 #[test]

@@ -380,7 +380,8 @@ impl Directions {
                 ZeroComponents::of_point(&point, self.eye).cover(self.zeros[c.0 as usize])
             }
             (DirectionDef::Towards(point), _) => {
-                ZeroComponents::of_point(&exact::Point::Given(self.vector(point)), self.eye).cover(self.zeros[c.0 as usize])
+                ZeroComponents::of_point(&exact::Point::Given(self.vector(point)), self.eye)
+                    .cover(self.zeros[c.0 as usize])
             }
         }
     }
