@@ -10,6 +10,9 @@ use crate::integral::Receiver;
 use crate::scene::{PieceId, PolygonId, Side};
 use glam::{DVec2, DVec3};
 
+/// What is shut off sees no more of anything else than gaps left by rounding show.
+pub(super) const SHUT: f64 = 1e-9;
+
 /// Takes views and tells patches apart in them.
 pub(super) struct Looker<'a> {
     pub(super) facets: &'a Facets,
@@ -60,15 +63,8 @@ impl Looker<'_> {
         is_wanted: impl Fn(u32) -> bool,
         mut share: impl FnMut(u32, f64),
     ) -> Result<(), ExchangeError> {
-        let scene = self.facets.order.scene();
-        let piece: PieceId =
-            scene.polygon(PolygonId(facet)).pieces().next().map_or(PieceId(0), super::super::scene::PieceRef::id);
-        let fails = |problem: String| ExchangeError::NoView { point, problem };
-        let viewpoint =
-            Viewpoint::on_piece(scene, piece, Side::Front, point).map_err(|error| fails(error.to_string()))?;
         let LookSpace { view, flat, parts, corners, stack, met } = space;
-        let image = self.facets.order.view_in(view, &viewpoint, &Domain::Above, &ViewOptions::default());
-        let image: &ContourImage = image.map_err(|error| fails(error.to_string()))?;
+        let (viewpoint, image) = self.view(view, facet, point)?;
         let receiver = Receiver::new(self.elements.frames[facet as usize].normal);
         let columns = Columns { patches: self.elements.patches.len() as u32 };
         for cell in image.cells() {
@@ -127,6 +123,41 @@ impl Looker<'_> {
             }
         }
         Ok(())
+    }
+
+    /// True if nothing is seen from the point of a facet's front nearest to `point` but backs and the fronts of some facets.
+    pub(super) fn is_shut(
+        &self,
+        space: &mut LookSpace,
+        facet: u32,
+        point: DVec3,
+        by: &[u32],
+    ) -> Result<bool, ExchangeError> {
+        let LookSpace { view, corners, .. } = space;
+        let (_, image) = self.view(view, facet, point)?;
+        let receiver = Receiver::new(self.elements.frames[facet as usize].normal);
+        let is_open = |cell: &Cell<'_>| {
+            cell.side() != Some(Side::Back) && cell.polygon().is_none_or(|polygon| !by.contains(&polygon.0))
+        };
+        let open = image.cells().filter(is_open).map(|cell| receiver.factor_of(cell.boundary(), corners));
+        Ok(open.sum::<f64>() <= SHUT)
+    }
+
+    /// What is seen from the point of a facet's front nearest to `point`.
+    fn view<'s>(
+        &self,
+        space: &'s mut ViewSpace,
+        facet: u32,
+        point: DVec3,
+    ) -> Result<(Viewpoint, &'s ContourImage), ExchangeError> {
+        let scene = self.facets.order.scene();
+        let piece: PieceId =
+            scene.polygon(PolygonId(facet)).pieces().next().map_or(PieceId(0), super::super::scene::PieceRef::id);
+        let fails = |problem: String| ExchangeError::NoView { point, problem };
+        let viewpoint =
+            Viewpoint::on_piece(scene, piece, Side::Front, point).map_err(|error| fails(error.to_string()))?;
+        let image = self.facets.order.view_in(space, &viewpoint, &Domain::Above, &ViewOptions::default());
+        Ok((viewpoint, image.map_err(|error| fails(error.to_string()))?))
     }
 }
 
