@@ -1,5 +1,6 @@
 //! What is seen from one point of an element, by patches.
 
+use super::contacts::TOUCHES;
 use super::element::Elements;
 use super::facets::Facets;
 use super::shape::{Frame, clip, sides, turn};
@@ -125,22 +126,43 @@ impl Looker<'_> {
         Ok(())
     }
 
-    /// True if nothing is seen from the point of a facet's front nearest to `point` but backs and the fronts of some facets.
+    /// True if nothing is seen from the point of a facet's front nearest to `point` but backs, and fronts where they are face to face with others; `touching` has
+    /// for each facet those that it is face to face with.
     pub(super) fn is_shut(
         &self,
         space: &mut LookSpace,
         facet: u32,
         point: DVec3,
-        by: &[u32],
+        touching: &[Vec<u32>],
     ) -> Result<bool, ExchangeError> {
-        let LookSpace { view, corners, .. } = space;
-        let (_, image) = self.view(view, facet, point)?;
+        let LookSpace { view, corners, flat, .. } = space;
+        let (viewpoint, image) = self.view(view, facet, point)?;
         let receiver = Receiver::new(self.elements.frames[facet as usize].normal);
-        let is_open = |cell: &Cell<'_>| {
-            cell.side() != Some(Side::Back) && cell.polygon().is_none_or(|polygon| !by.contains(&polygon.0))
-        };
-        let open = image.cells().filter(is_open).map(|cell| receiver.factor_of(cell.boundary(), corners));
-        Ok(open.sum::<f64>() <= SHUT)
+        let mut open = 0.0;
+        for cell in image.cells() {
+            let is_shut = match (cell.polygon(), cell.side()) {
+                (Some(seen), Some(Side::Front)) => {
+                    let touching = &touching[seen.index()];
+                    // In one plane fronts win over the backs of what they stand on.
+                    touching.contains(&facet) || {
+                        flatten(cell, viewpoint.eye(), &self.elements.frames[seen.index()], flat);
+                        touching.iter().any(|&other| self.covers(other, seen.0, flat))
+                    }
+                }
+                (seen, _) => seen.is_some(),
+            };
+            if !is_shut {
+                open += receiver.factor_of(cell.boundary(), corners);
+            }
+        }
+        Ok(open <= SHUT)
+    }
+
+    /// True if a facet that is face to face with another one covers all of a part of it.
+    fn covers(&self, facet: u32, other: u32, part: &[DVec2]) -> bool {
+        let frame = &self.elements.frames[other as usize];
+        let ring: Vec<DVec2> = self.facets.all[facet as usize].ring.iter().rev().map(|&p| frame.flat(p)).collect();
+        part.len() >= 3 && sides(&ring).all(|[a, b]| part.iter().all(|&p| turn(a, b, p) >= -TOUCHES * a.distance(b)))
     }
 
     /// What is seen from the point of a facet's front nearest to `point`.

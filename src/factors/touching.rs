@@ -71,7 +71,7 @@ impl ElementRows<'_> {
 
     fn is_shut(&self, element: u32, at: DVec3, space: &mut LookSpace) -> Result<bool, ExchangeError> {
         let facet = self.blockers.elements.all[element as usize].facet;
-        self.looker.is_shut(space, facet, at, &self.touching[facet as usize])
+        self.looker.is_shut(space, facet, at, self.touching)
     }
 }
 
