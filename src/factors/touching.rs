@@ -36,7 +36,9 @@ pub(super) fn touching_facets(facets: &Facets, frames: &[Frame]) -> Vec<Vec<u32>
             found[b].push(a as u32);
         }
     });
-    found.iter_mut().for_each(|facets| facets.sort_unstable());
+    for facets in &mut found {
+        facets.sort_unstable();
+    }
     found
 }
 
