@@ -3,6 +3,7 @@
 
 mod common;
 
+use common::browser::{shown, told};
 use common::program::Folder;
 
 #[test]
@@ -36,4 +37,71 @@ fn what_is_wrong_is_said_in_one_line() {
         let error = folder.run(line, code);
         assert!(error.contains(what), "{line}: {error}");
     }
+}
+
+/// The window of the image plane may be very wide, and what is drawn very small in it.
+#[test]
+fn cameras_of_all_widths_draw() {
+    let folder = Folder::new("draw-wide");
+    for wide in ["--fov 40 --aspect 1e9", "--fov 40 --aspect 1e15", "--fov 40 --aspect 1e-9", "--fov 179.9999999"] {
+        let line = format!("draw box.obj --eye 278,273,-800 --look-at 278,273,0 {wide} -o a.svg --json");
+        assert!(folder.parsed(&line)["regions"].as_u64().expect("a count") > 0, "{wide}");
+        let svg = folder.read("a.svg");
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{wide}");
+    }
+}
+
+/// A drawing without its lines, over a page of magenta, at several scales: the pixels in which some of that shows through between regions. In a closed
+/// room there is no background.
+const SCALES: &str = r#"<script>
+const drawing = document.getElementById("drawing").textContent;
+const shown = scale => new Promise(done => {
+  const image = new Image();
+  image.onload = () => done(image);
+  const sized = drawing.replace(/width="([\d.]+)" height="([\d.]+)"/, (_, w, h) => `width="${w * scale}" height="${h * scale}"`);
+  image.src = "data:image/svg+xml;charset=utf-8," + encodeURIComponent(sized);
+});
+(async () => {
+  const counts = [];
+  for (const scale of [0.23, 0.7, 1, 1.37, 3]) {
+    const image = await shown(scale);
+    const canvas = document.createElement("canvas");
+    [canvas.width, canvas.height] = [image.naturalWidth, image.naturalHeight];
+    const context = canvas.getContext("2d");
+    context.drawImage(image, 0, 0);
+    // Not the margin, nor what is smoothed beside it.
+    const margin = Math.ceil(MARGIN * scale) + 2;
+    const { data } = context.getImageData(margin, margin, canvas.width - 2 * margin, canvas.height - 2 * margin);
+    let magenta = 0;
+    for (let k = 0; k < data.length; k += 4) magenta += data[k] > data[k + 1] + 40 && data[k + 2] > data[k + 1] + 40;
+    counts.push(magenta);
+  }
+  document.body.dataset.magenta = counts;
+  document.body.dataset.state = "drawn";
+})();
+</script>"#;
+
+#[test]
+fn a_browser_shows_no_gaps_between_regions() {
+    let folder = Folder::new("draw-gaps");
+    folder.run("scene office --polygons 1000 --seed 3 -o office.obj", 0);
+    folder.run("draw office.obj --eye 1,1,1.6 --look-at 4,3,0.8 --fov 80 --size 400 -o a.svg", 0);
+    let drawing = folder.read("a.svg");
+    assert!(!drawing.contains("class=\"background\""), "nothing else is seen through");
+    let (fills, lines) = (r#"fill="white"/>"#, "</style>");
+    assert!(drawing.contains(fills) && drawing.contains(lines));
+    let bare = drawing
+        .replacen(fills, r##"fill="#ff00ff"/>"##, 1)
+        .replace(lines, ".hidden,.crease,.crossing,.border,.silhouette,.frame{display:none}</style>");
+    let show = |name: &str, drawing: &str| {
+        let script = SCALES.replace("MARGIN", "20");
+        let kept = format!(r#"<script type="text/plain" id="drawing">{drawing}</script>"#);
+        folder.write(name, format!("<!DOCTYPE html><html><body>{kept}{script}</body></html>"));
+        Some(told(&shown(&folder, name)?, "magenta"))
+    };
+    let Some(magenta) = show("a.html", &bare) else { return };
+    assert_eq!(magenta, [0.0; 5]);
+    // Regions that are not stroked do show gaps: the test sees them.
+    let gaps = show("b.html", &bare.replace(r#"stroke-width="1.2""#, r#"stroke-width="0""#)).expect("a browser");
+    assert!(gaps.iter().all(|&count| count > 0.0), "{gaps:?}");
 }

@@ -3,10 +3,9 @@
 
 mod common;
 
+use common::browser::{shown, told};
 use common::program::Folder;
 use serde_json::Value;
-use std::path::Path;
-use std::process::Command;
 
 fn number(value: &Value) -> f64 {
     value.as_f64().expect("a number")
@@ -38,7 +37,7 @@ fn the_cornell_box_is_solved_into_files_of_all_kinds() {
     raised("a.html", 2);
     folder.run(&format!("{line} --up 0,2,0 -o up.html"), 0);
     raised("up.html", 1);
-    let key = "<script>dispatchEvent(new KeyboardEvent('keydown', { key: 'u' }))</script></html>";
+    let key = "<script>window.requestAnimationFrame = draw => draw();dispatchEvent(new KeyboardEvent('keydown', { key: 'u' }))</script></html>";
     folder.write("key.html", page.replace("</html>", key));
     raised("key.html", 0);
     // Files of glTF say that y is up.
@@ -58,32 +57,72 @@ const LAMP: &str = r#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0
     "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],"bufferViews":[{"buffer":0,"byteLength":36}],
     "buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}"#;
 
-/// Opens a page in Chromium, if that is there; gives the direction that points up on the screen.
+/// The direction that points up on the screen when a page is shown, if there is a browser.
 fn shows_itself(folder: &Folder, page: &str) -> Option<[f64; 3]> {
-    let Some(browser) = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]
-        .into_iter()
-        .find(|path| Path::new(path).exists())
-    else {
-        eprintln!("SKIPPED: there is no Chromium to show {page} with; install it to have the page tested");
-        return None;
-    };
-    let profile = folder.path("profile");
-    let output = Command::new(browser)
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--use-gl=angle", "--use-angle=swiftshader"])
-        .args(["--enable-unsafe-swiftshader", "--no-first-run", "--disable-background-networking", "--disable-quic"])
-        .args(["--disable-component-update", "--disable-sync", "--virtual-time-budget=10000", "--dump-dom"])
-        .arg(format!("--user-data-dir={}", profile.display()))
-        .arg(format!("file://{}", folder.path(page).display()))
-        .output()
-        .expect("the browser runs");
-    let shown = String::from_utf8_lossy(&output.stdout);
-    let said = |name: &str| {
-        let rest = shown.split(&format!("data-{name}=\"")).nth(1)?;
-        rest.split('"').next()
-    };
-    assert_eq!(said("state"), Some("drawn"), "{}", String::from_utf8_lossy(&output.stderr));
-    let above: Vec<f64> = said("above")?.split(',').map(|x| x.parse().expect("a number")).collect();
-    Some(above.try_into().expect("three numbers"))
+    Some(told(&shown(folder, page)?, "above").try_into().expect("three numbers"))
+}
+
+/// Works the page's controls one after the other and leaves what the picture was each time: the share of pixels that are not background, their mean,
+/// and the share that differs from the first picture.
+const CONTROLS: &str = r#"<script>
+// A browser without a screen may be done before it has drawn: at once.
+window.requestAnimationFrame = draw => draw();
+const pixels = () => {
+  const all = new Uint8Array(4 * canvas.width * canvas.height);
+  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, all);
+  return all;
+};
+const form = document.querySelector("form");
+const input = (id, change) => { change(document.getElementById(id)); form.dispatchEvent(new Event("input")); };
+const mouse = (kind, type, what) => canvas.dispatchEvent(new kind(type, { cancelable: true, ...what }));
+const steps = [
+  () => {},
+  () => input("exposure", it => it.value = -3),
+  () => input("exposure", it => it.value = 0),
+  () => input("edges", it => it.checked = true),
+  () => input("edges", it => it.checked = false),
+  () => mouse(PointerEvent, "pointermove", { buttons: 1, movementX: 90, movementY: 0 }),
+  () => mouse(PointerEvent, "pointermove", { buttons: 1, movementX: -90, movementY: 0 }),
+  () => mouse(WheelEvent, "wheel", { deltaY: -300 }),
+];
+{
+  const report = [];
+  let first;
+  for (const step of steps) {
+    step();
+    const now = pixels();
+    first ??= now;
+    let [lit, sum, other] = [0, 0, 0];
+    for (let k = 0; k < now.length; k += 4) {
+      const is_lit = now[k] !== 32 || now[k + 1] !== 34 || now[k + 2] !== 37;
+      lit += is_lit;
+      sum += is_lit ? now[k] + now[k + 1] + now[k + 2] : 0;
+      other += [0, 1, 2].some(c => now[k + c] !== first[k + c]);
+    }
+    report.push(lit / now.length * 4, sum / lit / 3, other / now.length * 4);
+  }
+  document.body.dataset.report = report;
+}
+</script></html>"#;
+
+#[test]
+fn a_page_shows_patches_and_answers_its_controls() {
+    let folder = Folder::new("radiosity-page");
+    folder.run("radiosity box.obj --patch 300 --tolerance 1e-2 --until 0.1 -o a.html", 0);
+    let page = folder.read("a.html").replace("</html>", CONTROLS);
+    folder.write("a.html", page);
+    let Some(document) = shown(&folder, "a.html") else { return };
+    let report = told(&document, "report");
+    let steps: Vec<[f64; 3]> = report.chunks(3).map(|step| step.try_into().expect("three numbers")).collect();
+    let [plain, dark, again, edges, without, turned, back, near] = steps.try_into().expect("all steps");
+    let [lit, mean, _] = plain;
+    assert!(lit > 0.05 && mean > 10.0, "something is seen: {report:?}");
+    assert!(dark[1] < 0.8 * mean && dark[0] > 0.9 * lit, "exposure: {report:?}");
+    assert!(edges[2] > 0.001 && edges[2] < 0.5 * lit && edges[1] < mean, "edges: {report:?}");
+    assert!(turned[2] > 0.05, "turned: {report:?}");
+    assert!(near[0] > 1.2 * lit, "nearer: {report:?}");
+    // The same view has the same picture; turned back it may be off by rounding.
+    assert!(again[2] == 0.0 && without[2] == 0.0 && back[2] < 0.01, "{report:?}");
 }
 
 #[test]

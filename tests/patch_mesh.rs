@@ -181,3 +181,27 @@ fn what_lies_on_a_polygon_cuts_it_and_walls_beside_it_do_not() {
         assert_eq!(regions.len(), 3, "the floor, and what is below two blocks");
     }
 }
+
+/// Of three polygons of one plane that are meshed together.
+#[test]
+fn joined_patches_are_covered_as_a_whole_too() {
+    let (vertices, faces, corners) = block(DVec2::new(1.9, 1.4), 0.83, 0.1, 0.0);
+    let scene = scene(&[floor(0.0, &[0.0, 1.3, 2.0, 4.0]), (vertices, faces)]);
+    let (mesh, hosts) = PatchMesh::joined(&scene, 0.5).expect("a mesh");
+    assert_eq!(&hosts[..4], [0, 0, 0, 3].map(PolygonId));
+    let depth = |p: DVec2| {
+        let side = |j: usize| (corners[(j + 1) % 4] - corners[j]).normalize().perp_dot(p - corners[j]);
+        (0..4).map(side).fold(f64::INFINITY, f64::min)
+    };
+    let mut counted = [0; 2];
+    for (patch, ring) in rings(&mesh.patches().expect("a scene")).iter().enumerate() {
+        if mesh.polygon(patch).0 == 0 {
+            // Cuts are moved by a ten-thousandth of a side or so at most.
+            let depths: Vec<f64> = ring.iter().map(|p| depth(p.truncate())).collect();
+            let is_covered = depths.iter().all(|&depth| depth >= -5e-4);
+            assert!(is_covered || depths.iter().all(|&depth| depth <= 5e-4), "{ring:?} under {corners:?}");
+            counted[usize::from(is_covered)] += 1;
+        }
+    }
+    assert!(counted[0] > 40 && counted[1] > 5, "{counted:?}");
+}

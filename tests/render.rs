@@ -537,6 +537,24 @@ fn what_cannot_be_rendered_is_said() {
 }
 
 #[test]
+fn light_that_numbers_do_not_hold_is_told_with_its_pixel() {
+    let bright = |emission: f64| {
+        let scene = Scene::builder()
+            .mesh(&square([-4.0, -4.0], [4.0, 4.0], 0.0), &[vec![0, 1, 2, 3]], material("floor", 0.9, 0.0))
+            .mesh(&square([-1.0, -1.0], [1.0, 1.0], 0.01), &[vec![3, 2, 1, 0]], material("lamp", 0.0, emission))
+            .build()
+            .expect("a scene");
+        // On the floor below the lamp.
+        let camera = Frustum::new(DVec3::new(-1.0, 0.0, -0.002), DVec3::Z, 0.5, 1.0).expect("a camera");
+        render(&shader(&scene, Shading::Contour), DVec3::new(2.0, 0.0, 0.006), &camera, UVec2::new(5, 3), &|_| ())
+    };
+    let found = bright(1.7e308);
+    assert!(matches!(found, Err(RenderError::TooBright { x: 0..5, y: 0..3 })), "{found:?}");
+    let picture = bright(1e307).expect("numbers hold a tenth").picture;
+    assert!(picture.pixels().iter().any(|pixel| pixel.x > 1e306), "{picture:?}");
+}
+
+#[test]
 fn odd_cameras_see_what_there_is() {
     let scene = half_hidden();
     let shader = shader(&scene, Shading::Contour);

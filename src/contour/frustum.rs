@@ -83,7 +83,12 @@ impl Frustum {
         });
         let [[r, l], [t, b]] = [across, height];
         let normals = [t, r, b, l];
-        if is_convex(&normals) { Ok(Self { normals, frame, degrees, aspect }) } else { Err(FrustumError::Degenerate) }
+        let is_finite = (aspect * (degrees / 2.0).to_radians().tan()).is_finite();
+        if is_finite && is_convex(&normals) {
+            Ok(Self { normals, frame, degrees, aspect })
+        } else {
+            Err(FrustumError::Degenerate)
+        }
     }
 
     /// The normals of the half-spaces, to the inside: those of the upper, right, lower and left border.

@@ -56,6 +56,14 @@ pub enum ExchangeError {
         /// Why.
         problem: String,
     },
+    /// Views show too many pairs of patches.
+    #[error(
+        "views show more than {limit} factors between patches; take a longer edge, or a tolerance, to which rows are computed one by one"
+    )]
+    TooManyFactors {
+        /// How many are allowed.
+        limit: usize,
+    },
     /// What a row lacks is more than the estimates of its errors.
     #[error(
         "row {patch} sums to 1 only up to {residue:e}, and estimates of its errors explain {estimates:e}; ask for a smaller tolerance"

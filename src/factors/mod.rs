@@ -42,6 +42,7 @@ mod shape;
 mod shared;
 mod touching;
 mod tree;
+mod viewed;
 
 pub use error::ExchangeError;
 pub use exchange::Exchange;
@@ -53,3 +54,4 @@ pub(crate) use received::Receivers;
 pub use reciprocity::{Reciprocal, ReciprocityError, make_reciprocal};
 pub use row::{Entry, PatchInfo, PatchShape, Row, Share};
 pub use rows_once::RowsOnce;
+pub use viewed::ViewedRows;

@@ -63,7 +63,7 @@ impl PatchMesh {
         Self::of(scene, &facets, longest_edge)
     }
 
-    /// The same, but polygons that are beside each other in one plane, of one material and convex together, are meshed as one, and nothing is cut where others stand: fewer patches,
+    /// The same, but polygons that are beside each other in one plane, of one material and convex together, are meshed as one: fewer patches,
     /// for pictures to which patches only lend what they reflect. Also tells, for every polygon, the one that its patches are said to be part of, which is the first of those that are joined.
     ///
     /// # Errors
@@ -75,20 +75,14 @@ impl PatchMesh {
         }
         let facets = Facets::of(scene).map_err(ExchangeError::Facets)?;
         let (outlines, hosts) = outlines::joined(scene, &facets);
-        Ok((Self::within(scene, &facets, &outlines, longest_edge, false)?, hosts))
+        Ok((Self::within(scene, &facets, &outlines, longest_edge)?, hosts))
     }
 
     pub(super) fn of(scene: &Scene, facets: &Facets, longest_edge: f64) -> Result<Self, ExchangeError> {
-        Self::within(scene, facets, &outlines::pieces(scene, facets), longest_edge, true)
+        Self::within(scene, facets, &outlines::pieces(scene, facets), longest_edge)
     }
 
-    fn within(
-        scene: &Scene,
-        facets: &Facets,
-        outlines: &[Outline],
-        longest_edge: f64,
-        is_cut: bool,
-    ) -> Result<Self, ExchangeError> {
+    fn within(scene: &Scene, facets: &Facets, outlines: &[Outline], longest_edge: f64) -> Result<Self, ExchangeError> {
         let placement = facets.placement;
         let longest = placement.local_length(longest_edge.min(2.0 * scene.diagonal()));
         let frames = frames(facets);
@@ -99,7 +93,7 @@ impl PatchMesh {
                 .map_err(|mesh::TooFine| ExchangeError::TooFine { polygon: *polygon })?;
             cells.extend(parts.into_iter().map(|ring| (*polygon, *piece, ring)));
         }
-        let segments = if is_cut { footprints(facets, &frames, longest) } else { vec![Vec::new(); frames.len()] };
+        let segments = footprints(facets, &frames, longest);
         let plan = |piece: PieceId| {
             let facet = facets.of_piece[piece.index()] as usize;
             (&frames[facet], &segments[facet][..])

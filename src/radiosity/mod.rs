@@ -9,6 +9,7 @@
 //! Radiosities and emitted radiances are linear RGB: a material's emission L is a radiosity of pi L, and so the picture of a surface of radiosity B has the radiance B / pi.
 
 mod balance;
+mod bounces;
 mod error;
 mod gather;
 mod solver;
@@ -16,6 +17,7 @@ mod surface;
 mod uneven;
 
 pub use balance::Balance;
+pub use bounces::Gathered;
 pub use error::RadiosityError;
 pub use gather::Gather;
 pub use solver::{Shot, Solver, SolverOptions, SolverState};

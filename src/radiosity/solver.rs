@@ -91,17 +91,7 @@ impl<'a> Solver<'a> {
     /// If a material has no reflectance ([`Material::reflectances`](crate::scene::Material::reflectances)), if nothing emits, or if
     /// numbers do not hold the power that is emitted.
     pub fn new(scene: &Scene, exchange: &'a Exchange, options: SolverOptions) -> Result<Self, RadiosityError> {
-        let (mut emission, mut reflectance) = (Vec::new(), Vec::new());
-        for PatchInfo { polygon, .. } in exchange.patches() {
-            let material = scene.polygon(*polygon).material();
-            let [matt, _] = material.reflectances().map_err(|source| {
-                let (polygon, material) = (*polygon, material.name.clone());
-                RadiosityError::BadMaterial { polygon, material, source }
-            })?;
-            emission.push(DVec3::from(material.emission) * PI);
-            reflectance.push(matt);
-        }
-        check_power(exchange.patches(), &emission)?;
+        let (emission, reflectance) = surfaces(scene, exchange)?;
         let state = SolverState { radiosity: emission.clone(), unshot: emission.clone(), ..SolverState::default() };
         let rows = vec![None; emission.len()];
         let source = RowsOnce::new(exchange);
@@ -355,4 +345,20 @@ fn check_power(patches: &[PatchInfo], emission: &[DVec3]) -> Result<(), Radiosit
         }
     }
     if sum > 0.0 { Ok(()) } else { Err(RadiosityError::Dark) }
+}
+
+/// What each patch emits, and what part it reflects.
+pub(super) fn surfaces(scene: &Scene, exchange: &Exchange) -> Result<(Vec<DVec3>, Vec<DVec3>), RadiosityError> {
+    let (mut emission, mut reflectance) = (Vec::new(), Vec::new());
+    for PatchInfo { polygon, .. } in exchange.patches() {
+        let material = scene.polygon(*polygon).material();
+        let [matt, _] = material.reflectances().map_err(|source| {
+            let (polygon, material) = (*polygon, material.name.clone());
+            RadiosityError::BadMaterial { polygon, material, source }
+        })?;
+        emission.push(DVec3::from(material.emission) * PI);
+        reflectance.push(matt);
+    }
+    check_power(exchange.patches(), &emission)?;
+    Ok((emission, reflectance))
 }

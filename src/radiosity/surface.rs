@@ -1,7 +1,7 @@
 //! A mesh of all surfaces with radiosities at its corners.
 
 use super::{Gather, RadiosityError, strength};
-use crate::scene::{PieceRef, PolygonId, Scene};
+use crate::scene::{PieceId, PieceRef, PolygonId, Scene};
 use glam::DVec3;
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -9,11 +9,14 @@ use rustc_hash::{FxHashMap, FxHashSet};
 /// there would not be seen.
 pub(super) const INSIDE: f64 = 1e-3;
 
+/// Between ends that differ by more than so many times what a middle may be off, a middle on their line may be chance, as between the foot of a leg and the border of a shadow: such edges are halved as well.
+const STEEP: f64 = 8.0;
+
 /// How fine a surface is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceOptions {
     /// An edge is halved if the radiosity in its middle differs from what its ends say by more than this part of it, or of the mean of all surfaces if that
-    /// is larger.
+    /// is larger; also if its ends differ by more than eight times that.
     pub detail: f64,
     /// How often at most an edge of a patch is halved: 0 for the patches as they are.
     pub depth: u32,
@@ -44,6 +47,16 @@ pub struct Surface {
     pub patches: Vec<PolygonId>,
 }
 
+/// What radiosities along edges are compared with.
+struct Light<'a> {
+    gather: &'a Gather<'a>,
+    options: &'a SurfaceOptions,
+    mean: f64,
+    /// The radiosities of the middles of edges that have been found before; none where nothing but backs is seen.
+    known: FxHashMap<[u32; 2], Option<DVec3>>,
+    done: &'a (dyn Fn(usize) + Sync),
+}
+
 impl Surface {
     /// Makes the surface of a scene of patches, of which patch k is part of polygon `of[k]`: corners of patches first, then middles of edges as long as radiosities change quickly
     /// along them. The cost is that of a view for every patch, every corner and every edge.
@@ -59,10 +72,10 @@ impl Surface {
         gather: &Gather<'_>,
         options: &SurfaceOptions,
     ) -> Result<Self, RadiosityError> {
-        Self::watched(scene, of, gather, options, &|_| ())
+        Self::watched(scene, of, gather, options, &|_| true, &|_| ())
     }
 
-    /// The same; `done` is told from any thread how many more views are made. How many there will be is not known before.
+    /// The same of those patches alone for which `is_wanted` is true; `done` is told from any thread how many more views are made. How many there will be is not known before.
     ///
     /// # Errors
     /// As [`Surface::new`].
@@ -74,19 +87,22 @@ impl Surface {
         of: &[PolygonId],
         gather: &Gather<'_>,
         options: &SurfaceOptions,
+        is_wanted: &dyn Fn(PolygonId) -> bool,
         done: &(dyn Fn(usize) + Sync),
     ) -> Result<Self, RadiosityError> {
         let mut surface = Self::default();
         // What covers one patch and not the one beside it stands on the side between them, where both see it otherwise.
-        let is_covered = covered_pieces(scene, gather, done)?;
+        let middles = middles_of_pieces(scene, gather, is_wanted, done)?;
         let mut corners: FxHashMap<(PolygonId, bool, [u64; 3]), u32> = FxHashMap::default();
         let mut places = Vec::new();
-        for patch in scene.polygons() {
+        let mut known: FxHashMap<[u32; 2], Option<DVec3>> = FxHashMap::default();
+        for patch in scene.polygons().filter(|patch| is_wanted(patch.id())) {
             for piece in patch.pieces() {
                 let ring: Vec<DVec3> = piece.points().collect();
                 let middle = mean_of(&ring);
+                let in_middle = middles[&piece.id()];
                 let numbers = ring.iter().map(|&p| {
-                    let is_covered = is_covered[piece.id().index()];
+                    let is_covered = in_middle.is_none();
                     let key = (of[patch.id().index()], is_covered, p.to_array().map(f64::to_bits));
                     *corners.entry(key).or_insert_with(|| {
                         surface.positions.push(p);
@@ -99,6 +115,9 @@ impl Surface {
                     surface.triangles.push(triangle);
                     surface.patches.push(patch.id());
                 }
+                if let Some(diagonal) = diagonal_through(middle, &ring, &numbers) {
+                    known.insert(diagonal, in_middle);
+                }
             }
             surface.check_size(options)?;
         }
@@ -108,9 +127,10 @@ impl Surface {
         let radiosity = found.into_iter().zip(patches).map(|(b, patch)| b.unwrap_or(gather.emission(patch)));
         surface.radiosity = radiosity.collect();
         let mean = surface.mean(gather);
+        let light = Light { gather, options, mean, known, done };
         let mut accepted: FxHashSet<[u32; 2]> = FxHashSet::default();
         for _ in 0..options.depth {
-            if !surface.refine(gather, options, mean, &mut accepted, &mut is_covered, done)? {
+            if !surface.refine(&light, &mut accepted, &mut is_covered)? {
                 break;
             }
         }
@@ -139,13 +159,11 @@ impl Surface {
     /// Halves edges that need it; false if none does.
     fn refine(
         &mut self,
-        gather: &Gather<'_>,
-        options: &SurfaceOptions,
-        mean: f64,
+        light: &Light<'_>,
         accepted: &mut FxHashSet<[u32; 2]>,
         is_covered: &mut Vec<bool>,
-        done: &(dyn Fn(usize) + Sync),
     ) -> Result<bool, RadiosityError> {
+        let Light { gather, options, mean, known, done } = light;
         let mut asked: FxHashSet<[u32; 2]> = FxHashSet::default();
         let (mut edges, mut places) = (Vec::new(), Vec::new());
         for (triangle, &patch) in self.triangles.iter().zip(&self.patches) {
@@ -154,26 +172,30 @@ impl Surface {
             for edge in sides(*triangle) {
                 if !accepted.contains(&edge) && asked.insert(edge) {
                     let [p, q] = edge.map(|corner| self.positions[corner as usize]);
-                    edges.push((edge, p.midpoint(q)));
-                    places.push((patch, p.midpoint(q).lerp(middle, INSIDE)));
+                    edges.push((edge, p.midpoint(q), patch));
+                    if !known.contains_key(&edge) {
+                        places.push((patch, p.midpoint(q).lerp(middle, INSIDE)));
+                    }
                 }
             }
         }
-        let patches_of_edges: Vec<PolygonId> = places.iter().map(|place| place.0).collect();
-        let found = gather.uncovered_at_all(places, done)?.into_iter().zip(patches_of_edges);
+        let mut found = gather.uncovered_at_all(places, done)?.into_iter();
         let mut halves: FxHashMap<[u32; 2], u32> = FxHashMap::default();
-        for ((edge, position), (uncovered, patch)) in edges.into_iter().zip(found) {
+        for (edge, position, patch) in edges {
+            let uncovered = known.get(&edge).copied().or_else(|| found.next()).flatten();
             let radiosity = uncovered.unwrap_or(gather.emission(patch));
             let [p, q] = edge.map(|corner| self.radiosity[corner as usize]);
             let off = (radiosity - p.midpoint(q)).abs().max_element() * 3.0;
-            if off > options.detail * strength(radiosity).max(mean) {
-                halves.insert(edge, self.positions.len() as u32);
-                self.positions.push(position);
-                self.radiosity.push(radiosity);
-                is_covered.push(uncovered.is_none());
-            } else {
+            let allowed = options.detail * strength(radiosity).max(*mean);
+            let apart = (p - q).abs().max_element() * 3.0;
+            if off <= allowed && apart <= STEEP * allowed {
                 accepted.insert(edge);
+                continue;
             }
+            halves.insert(edge, self.positions.len() as u32);
+            self.positions.push(position);
+            self.radiosity.push(radiosity);
+            is_covered.push(uncovered.is_none());
         }
         self.check_size(options)?;
         let (mut triangles, mut patches) = (Vec::new(), Vec::new());
@@ -232,15 +254,26 @@ impl Surface {
     }
 }
 
-/// For each piece whether nothing but backs is seen from its middle.
-fn covered_pieces(
+/// For each piece of the patches that are wanted the radiosity of its middle; none where nothing but backs is seen.
+fn middles_of_pieces(
     scene: &Scene,
     gather: &Gather<'_>,
+    is_wanted: &dyn Fn(PolygonId) -> bool,
     done: &(dyn Fn(usize) + Sync),
-) -> Result<Vec<bool>, RadiosityError> {
-    let middle = |piece: PieceRef<'_>| (piece.polygon(), mean_of(&piece.points().collect::<Vec<_>>()));
-    let found = gather.uncovered_at_all(scene.pieces().map(middle).collect(), done)?;
-    Ok(found.iter().map(Option::is_none).collect())
+) -> Result<FxHashMap<PieceId, Option<DVec3>>, RadiosityError> {
+    let pieces: Vec<PieceRef<'_>> = scene.pieces().filter(|piece| is_wanted(piece.polygon())).collect();
+    let middle = |piece: &PieceRef<'_>| (piece.polygon(), mean_of(&piece.points().collect::<Vec<_>>()));
+    let found = gather.uncovered_at_all(pieces.iter().map(middle).collect(), done)?;
+    Ok(pieces.iter().map(|piece| piece.id()).zip(found).collect())
+}
+
+/// The side that the triangles of a quadrilateral share, if its middle is that of the ring, or as near to that as points are to the boundary that stand for those on it.
+fn diagonal_through(middle: DVec3, ring: &[DVec3], numbers: &[u32]) -> Option<[u32; 2]> {
+    let first = usize::from(ring.len() == 4 && is_cut_second(ring));
+    let [a, b] = [first, first + 2].map(|k| ring.get(k));
+    let [&a, &b] = [a?, b?];
+    let is_near = ring.len() == 4 && a.midpoint(b).distance(middle) <= INSIDE * a.distance(b);
+    is_near.then(|| [numbers[first], numbers[first + 2]]).map(|[p, q]| [p.min(q), p.max(q)])
 }
 
 fn mean_of(ring: &[DVec3]) -> DVec3 {
@@ -266,12 +299,14 @@ fn split([a, b, c]: [u32; 3], middles: [Option<u32>; 3], out: &mut Vec<[u32; 3]>
 
 /// The triangles of a convex ring; a quadrilateral is cut along its shorter diagonal.
 fn fan(ring: &[DVec3], numbers: &[u32]) -> Vec<[u32; 3]> {
-    let first = match ring {
-        [a, b, c, d] if b.distance_squared(*d) < a.distance_squared(*c) => 1,
-        _ => 0,
-    };
+    let first = usize::from(is_cut_second(ring));
     let corner = |k: usize| numbers[(first + k) % numbers.len()];
     (1..ring.len() - 1).map(|k| [corner(0), corner(k), corner(k + 1)]).collect()
+}
+
+/// True if a ring is cut from its second corner and not from its first: a quadrilateral along the shorter diagonal.
+fn is_cut_second(ring: &[DVec3]) -> bool {
+    matches!(ring, [a, b, c, d] if b.distance_squared(*d) < a.distance_squared(*c))
 }
 
 #[cfg(test)]

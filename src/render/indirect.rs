@@ -2,7 +2,7 @@
 
 use super::RenderError;
 use super::patch_index::{PatchIndex, off};
-use crate::contour::SceneOrder;
+use crate::contour::{ContourImage, SceneOrder};
 use crate::factors::Exchange;
 use crate::radiosity::{Gather, RadiosityError, Surface, SurfaceOptions};
 use crate::scene::{PolygonId, Scene, Side};
@@ -77,25 +77,28 @@ impl Indirect {
     /// As [`Surface::new`].
     ///
     /// # Panics
-    /// If the exchange or the regions are of another number of patches.
+    /// If there are other numbers of patches.
     pub fn interpolated(
         self,
         exchange: &Exchange,
         regions: &[PolygonId],
         options: &SurfaceOptions,
     ) -> Result<Self, RadiosityError> {
-        self.interpolated_watched(exchange, regions, options, &|_| ())
+        let all = vec![true; self.patches.polygon_count()];
+        self.interpolated_on(&all, exchange, regions, options, &|_| ())
     }
 
-    /// The same; `done` is told from any thread how many more views are made.
+    /// The same on those patches alone that are `shown` ([`Shader::shown`](super::Shader::shown)): on others it is gathered at every point that
+    /// is asked for. `done` is told from any thread how many more views are made.
     ///
     /// # Errors
     /// As [`Surface::new`].
     ///
     /// # Panics
     /// As [`Indirect::interpolated`].
-    pub fn interpolated_watched(
+    pub fn interpolated_on(
         mut self,
+        shown: &[bool],
         exchange: &Exchange,
         regions: &[PolygonId],
         options: &SurfaceOptions,
@@ -107,7 +110,9 @@ impl Indirect {
         let share = |k: u32| if self.is_matt(PolygonId(k)) { DVec3::ONE } else { DVec3::ZERO };
         let receives: Vec<DVec3> = (0..count as u32).map(share).collect();
         let gather = Gather::new(exchange, &nothing, &receives, &reflected);
-        let surface = Surface::watched(&self.patches, regions, &gather, options, done)?;
+        assert_eq!(shown.len(), count, "one for every patch");
+        let is_wanted = |patch: PolygonId| shown[patch.index()];
+        let surface = Surface::watched(&self.patches, regions, &gather, options, &is_wanted, done)?;
         let starts = (0..=count).map(|k| surface.patches.partition_point(|patch| patch.index() < k)).collect();
         self.surface = Some(Irradiance { surface, starts });
         Ok(self)
@@ -116,6 +121,11 @@ impl Indirect {
     /// True if the material of a patch says that it reflects diffusely.
     fn is_matt(&self, patch: PolygonId) -> bool {
         DVec3::from(self.patches.polygon(patch).material().diffuse) != DVec3::ZERO
+    }
+
+    /// How many patches there are.
+    pub fn patch_count(&self) -> usize {
+        self.patches.polygon_count()
     }
 
     /// How many corners the irradiance was gathered at; 0 if it is gathered for each point.
@@ -137,8 +147,20 @@ impl Indirect {
 
     /// The patch that a point of a polygon is on.
     pub(super) fn patch_at(&self, polygon: PolygonId, point: DVec3) -> Option<PolygonId> {
-        let polygon = self.hosts.as_ref().map_or(polygon, |hosts| hosts[polygon.index()]);
-        self.index.patch_at(&self.patches, polygon, point)
+        self.index.patch_at(&self.patches, self.host(polygon), point)
+    }
+
+    /// The patches whose fronts an image of the scene shows, and at most some beside these, in no order.
+    pub(super) fn patches_in<'a>(&'a self, image: &'a ContourImage) -> impl Iterator<Item = PolygonId> + 'a {
+        image.cells().filter(|cell| cell.side() == Some(Side::Front)).flat_map(|cell| {
+            let corners = cell.boundary().map(|direction| cell.point_at(direction));
+            let host = cell.polygon().map(|polygon| self.host(polygon));
+            host.map_or_else(Vec::new, |host| self.index.patches_near(host, corners))
+        })
+    }
+
+    fn host(&self, polygon: PolygonId) -> PolygonId {
+        self.hosts.as_ref().map_or(polygon, |hosts| hosts[polygon.index()])
     }
 
     /// The interpolated irradiance of a front; `None` if there is none, or if the material was matt and black when it was gathered.

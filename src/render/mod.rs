@@ -31,6 +31,7 @@ mod patch_index;
 mod picture;
 mod sampled;
 mod shader;
+mod shown;
 
 pub use error::RenderError;
 pub use indirect::Indirect;

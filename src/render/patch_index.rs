@@ -69,6 +69,30 @@ impl PatchIndex {
         let found = near.iter().map(|&patch| (distance(patch, &mut ring), patch));
         found.min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))).map(|(_, patch)| patch)
     }
+
+    /// All patches of a polygon that are near a part of it with these corners: at least those that it meets.
+    pub(super) fn patches_near(
+        &self,
+        polygon: PolygonId,
+        corners: impl Iterator<Item = Option<DVec3>>,
+    ) -> Vec<PolygonId> {
+        let grid = &self.grids[polygon.index()];
+        if grid.starts.is_empty() {
+            return Vec::new();
+        }
+        let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        for corner in corners {
+            // One that is nowhere, as the polygon is seen edge-on there, may be anywhere.
+            let Some(corner) = corner.filter(|corner| corner.is_finite()) else { return grid.patches.clone() };
+            let flat = DVec2::from(grid.axes.map(|axis| corner[axis]));
+            (low, high) = (low.min(flat), high.max(flat));
+        }
+        // A little more, as points are rounded.
+        let margin = 1e-6 * grid.step;
+        let [from, to] = [grid.cell(low - margin), grid.cell(high + margin)];
+        let cells = (from.y..=to.y).flat_map(|y| (from.x..=to.x).map(move |x| UVec2::new(x, y)));
+        cells.flat_map(|cell| grid.of_cell(cell)).copied().collect()
+    }
 }
 
 impl Grid {
@@ -121,7 +145,10 @@ impl Grid {
         if self.starts.is_empty() {
             return &[];
         }
-        let cell = self.cell(DVec2::from(self.axes.map(|axis| point[axis])));
+        self.of_cell(self.cell(DVec2::from(self.axes.map(|axis| point[axis]))))
+    }
+
+    fn of_cell(&self, cell: UVec2) -> &[PolygonId] {
         let k = (cell.y * self.size.x + cell.x) as usize;
         &self.patches[self.starts[k] as usize..self.starts[k + 1] as usize]
     }

@@ -66,7 +66,7 @@ pub struct Spot {
 /// Both sides of a polygon reflect by its material; only fronts emit, unless [`Lighting::is_two_sided`] says otherwise.
 pub struct Shader {
     pub(super) order: SceneOrder,
-    brdfs: Vec<Box<dyn Brdf>>,
+    pub(super) brdfs: Vec<Box<dyn Brdf>>,
     pub(super) lighting: Lighting,
     /// What each point light sees.
     pub(super) light_views: Vec<Option<ContourImage>>,

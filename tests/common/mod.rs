@@ -1,6 +1,8 @@
 //! Scenes and small tools that several tests share.
 #![allow(dead_code, reason = "every test file uses its own part")]
 
+#[cfg(feature = "cli")]
+pub(crate) mod browser;
 pub(crate) mod face;
 #[cfg(feature = "cli")]
 pub(crate) mod program;

@@ -23,13 +23,26 @@ impl Piece {
         self.ends[0].x.max(self.ends[1].x)
     }
 
-    /// The squares that its box meets.
+    /// All squares that it meets, and some beside them.
     fn squares(&self, square: f64) -> impl Iterator<Item = [i64; 2]> + use<> {
-        let [p, q] = self.ends;
+        let [p, q] = if self.ends[0].x <= self.ends[1].x { self.ends } else { [self.ends[1], self.ends[0]] };
         let [low, high] = [p.min(q), p.max(q)].map(|p| (p / square).floor().as_i64vec2());
-        (low.x..=high.x).flat_map(move |x| (low.y..=high.y).map(move |y| [x, y]))
+        // Rounding is far below a square: one more above and below is enough.
+        let height =
+            move |border: i64| p.y + ((border as f64 * square - p.x) / (q.x - p.x)).clamp(0.0, 1.0) * (q.y - p.y);
+        let rows = move |column: i64| {
+            if low.x == high.x {
+                return low.y..=high.y;
+            }
+            let [a, b] = [column, column + 1].map(|border| (height(border) / square).floor() as i64);
+            (a.min(b) - 1).max(low.y)..=(a.max(b) + 1).min(high.y)
+        };
+        (low.x..=high.x).flat_map(move |x| rows(x).map(move |y| [x, y]))
     }
 }
+
+/// All pieces together are at most so many squares wide and high.
+const MOST_SQUARES: f64 = 4096.0;
 
 /// Pieces of polylines by number, sorted into squares: what they cost is theirs, and the pairs within each.
 pub(super) struct Pieces {
@@ -39,7 +52,10 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
+    /// In squares of that size, or larger ones if it takes too many of them; the ends of all pieces are finite.
     pub(super) fn new(pieces: Vec<Piece>, square: f64) -> Self {
+        let farthest = pieces.iter().flat_map(|piece| piece.ends).map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let square = square.max(farthest * (2.0 / MOST_SQUARES));
         let mut squares: FxHashMap<_, Vec<_>> = FxHashMap::default();
         for (number, piece) in (0..).zip(&pieces) {
             for place in piece.squares(square) {
@@ -68,9 +84,15 @@ impl Pieces {
         ];
         // A square may have thousands: it is left alone if it keeps the piece.
         let [first_squares, second_squares] = halves.map(|half| half.squares(self.square).collect::<Vec<_>>());
-        for place in whole.squares(self.square) {
-            if !first_squares.contains(&place) {
-                self.squares.entry(place).or_default().retain(|&other| other != number);
+        let whole_squares: Vec<_> = whole.squares(self.square).collect();
+        for place in &whole_squares {
+            if !first_squares.contains(place) {
+                self.squares.entry(*place).or_default().retain(|&other| other != number);
+            }
+        }
+        for place in first_squares {
+            if !whole_squares.contains(&place) {
+                self.squares.entry(place).or_default().push(number);
             }
         }
         for place in second_squares {
@@ -187,6 +209,34 @@ mod tests {
             assert_eq!(pieces.meeting(&[1, 6]), expected, "{square}");
             assert_eq!(expected.is_empty(), DVec2::from(middle) == DVec2::splat(3.5), "{square}: {expected:?}");
         }
+    }
+
+    /// Of any lengths and slopes: the same as from all pairs, in squares of any size; a long piece is in few of them.
+    #[test]
+    fn no_square_misses_a_pair() {
+        let mut state = 7u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / 2f64.powi(52) - 1.0
+        };
+        let mut point = |size: f64| DVec2::new(random(), random()) * size;
+        let lines: Vec<Vec<DVec2>> = (0..400)
+            .map(|k| {
+                let start = point(1.0);
+                vec![start, start + point(2f64.powi(-(k % 12)))]
+            })
+            .collect();
+        let ends: Vec<[DVec2; 2]> = lines.iter().map(|line| [line[0], line[1]]).collect();
+        let meets = |k: usize| (0..ends.len()).any(|other| other != k && meet(ends[k], ends[other]));
+        let expected: Vec<[u32; 2]> = (0..ends.len()).filter(|&k| meets(k)).map(|k| [k as u32, 0]).collect();
+        assert!(expected.len() > 100 && expected.len() < 300, "{}", expected.len());
+        for square in [1e-9, 0.003, 0.1, 5.0] {
+            assert_eq!(crossing(&lines, square), expected, "{square}");
+        }
+        let long = Piece { line: 0, span: [0.0, 1.0], ends: [DVec2::new(-1e9, -1e9), DVec2::new(1e9, 1e9)] };
+        let pieces = Pieces::new(vec![long], 1e-9);
+        let count = pieces.squares.len();
+        assert!((4096..=5 * 4097).contains(&count), "{count}");
     }
 
     #[test]

@@ -199,6 +199,12 @@ impl Projector {
         self.place(self.frame.components(direction))
     }
 
+    /// Where a direction that a gnomonic picture shows lies in it: rounding may have turned it beyond the borders, or the horizon.
+    fn point_within(&self, direction: DVec3) -> DVec2 {
+        let d = self.frame.components(direction);
+        (d.truncate() / d.z.max(f64::MIN_POSITIVE)).clamp(self.window.low, self.window.high)
+    }
+
     /// The same for a direction in the frame's axes.
     fn place(&self, d: DVec3) -> DVec2 {
         match self.projection {

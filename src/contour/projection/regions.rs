@@ -422,7 +422,11 @@ impl<'a> Flattener<'a> {
     /// Where a run starts: the same place for all that start or end there, but for the seam and its ends.
     fn start(&self, run: Run) -> DVec2 {
         let vertex = self.outlines.start(run);
-        let place = self.projector.point(self.outlines.unit(vertex));
+        let direction = self.outlines.unit(vertex);
+        if self.projector.projection == Projection::Gnomonic {
+            return self.projector.point_within(direction);
+        }
+        let place = self.projector.point(direction);
         if !self.is_panorama() {
             return place;
         }

@@ -28,7 +28,7 @@ R,G,B. N is an exponent from 0 to 1000000, A a roughness from 0.0001 to 10 (the 
   mirror[:FRESNEL]                a smooth surface
   gltf:BASE:METALLIC:ROUGHNESS    metallic-roughness of glTF; BASE is a reflectance
   merl:FILE                       measurements in MERL's format; sh:FILE a table of spherical harmonics. Names of files have no +
-  material                        what the scene says of the polygon that --eye is on";
+  material                        what the scene says: of the polygon that --eye is on (reflect), or of the material it is given for (render)";
 
 /// A sum of models.
 #[derive(Clone)]

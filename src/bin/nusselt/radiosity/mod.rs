@@ -37,8 +37,8 @@ pub(crate) struct Radiosity {
     /// The scene: OBJ, glTF, GLB, STL, PLY or CityJSON. Emissions (Ke) are radiances, of fronts; diffuse colours (Kd)
     /// are what part is reflected
     scene: PathBuf,
-    /// Mesh polygons into patches with edges of at most this length, in scene units [default: polygons as they are, cut where others
-    /// stand on them]
+    /// Mesh polygons into patches with edges of at most this length, in scene units, that end where others stand on them
+    /// [default: polygons as they are, cut where others stand on them]
     #[arg(long, value_name = "SIZE", value_parser = parse_size, allow_hyphen_values = true)]
     patch: Option<f64>,
     /// Halve patches, in both directions, where the light on them changes, and go on; so many times. Without --patch, starting

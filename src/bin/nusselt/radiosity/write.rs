@@ -67,7 +67,7 @@ impl Radiosity {
         let gather = Gather::new(exchange, solver.emission(), solver.reflectance(), shown);
         let options = SurfaceOptions { detail: self.detail, depth: self.depth, ..SurfaceOptions::default() };
         let views = SharedProgress::new("views from corners", None, common.quiet);
-        let surface = Surface::watched(patches, regions, &gather, &options, &|count| views.add(count))
+        let surface = Surface::watched(patches, regions, &gather, &options, &|_| true, &|count| views.add(count))
             .map_err(|error| self.about(&error))?;
         drop(views);
         let exposure = self.exposure.unwrap_or_else(|| auto_exposure(&surface, solver.emission()));

@@ -1,12 +1,15 @@
 //! Interreflection, solved before pictures are taken.
 
+use super::path::Camera;
 use crate::args::Common;
 use crate::failure::Failure;
 use crate::progress::{Progress, SharedProgress};
 use crate::radiosity::{parse_fraction, parse_size};
+use glam::DVec3;
 use nusselt::factors::{Exchange, ExchangeOptions, PatchMesh};
-use nusselt::radiosity::{RadiosityError, Solver, SolverOptions, SurfaceOptions};
+use nusselt::radiosity::{Gathered, RadiosityError, Solver, SolverOptions, SurfaceOptions};
 use nusselt::render::{Indirect, RenderError, Shader, Shading};
+use nusselt::scene::Scene;
 use std::fmt::Display;
 use std::path::Path;
 use std::time::Instant;
@@ -27,11 +30,12 @@ pub(super) struct Interreflection {
     #[arg(long, value_name = "SIZE", value_parser = parse_size, allow_hyphen_values = true)]
     patch: Option<f64>,
     /// Stop when so much of the emitted power is left to be sent
-    #[arg(long, value_name = "FRACTION", default_value = "0.01", value_parser = parse_fraction, allow_hyphen_values = true)]
+    #[arg(long, value_name = "FRACTION", default_value = "1e-4", value_parser = parse_fraction, allow_hyphen_values = true)]
     until: f64,
-    /// Compute each form factor to this absolute error
-    #[arg(long, value_name = "T", default_value = "5e-3", value_parser = parse_size, allow_hyphen_values = true)]
-    tolerance: f64,
+    /// Compute each form factor between patches to this absolute error and shoot with them, as radiosity does; slower [default: by one to
+    /// four exact views from each patch, and gathering]
+    #[arg(long, value_name = "T", value_parser = parse_size, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
     /// Halve edges of patches where the interreflected light in their middle differs by more than this part from what their ends say
     #[arg(long, value_name = "PART", default_value = "0.03", value_parser = parse_size, allow_hyphen_values = true)]
     detail: f64,
@@ -45,6 +49,7 @@ pub(super) struct Interreflection {
 pub(super) struct Solved {
     pub(super) patches: usize,
     pub(super) shots: usize,
+    pub(super) bounces: usize,
     pub(super) corners: usize,
     pub(super) solve_s: f64,
     pub(super) surface_s: f64,
@@ -52,6 +57,8 @@ pub(super) struct Solved {
 
 /// Edges of patches are at most this part of the scene's diagonal.
 const PART: f64 = 1.0 / 12.0;
+/// Form factors between patches take 16 bytes each, twice for a while.
+const MOST_FACTORS: usize = 30_000_000;
 
 impl Interreflection {
     /// Adds it to a shader, if it is wanted and something emits.
@@ -59,6 +66,7 @@ impl Interreflection {
         &self,
         shader: Shader,
         shading: Shading,
+        cameras: &[Camera],
         file: &Path,
         common: &Common,
     ) -> Result<(Shader, Solved), Failure> {
@@ -74,38 +82,40 @@ impl Interreflection {
         }
         let (mesh, hosts) = PatchMesh::joined(&scene, longest).map_err(|error| failed(&error))?;
         let patches = mesh.patches().map_err(|error| failed(&error))?;
-        let options = ExchangeOptions { tolerance: self.tolerance, ..ExchangeOptions::default() };
+        let default = ExchangeOptions::default();
+        let options = ExchangeOptions { tolerance: self.tolerance.unwrap_or(default.tolerance), ..default };
         // Patches as parts of whole polygons, of which there are fewer to see.
         let exchange = Exchange::of_mesh(&mesh, options).map_err(|error| failed(&error))?;
-        let mut solver = match Solver::new(&scene, &exchange, SolverOptions::default()) {
-            Err(RadiosityError::Dark) => return Ok((shader, Solved::default())),
-            solver => solver.map_err(|error| failed(&error))?,
+        let solution = match self.tolerance {
+            None => self.by_views(&scene, &exchange, longest, common),
+            Some(_) => self.by_shooting(&scene, &exchange, common),
         };
-        let mut progress = Progress::new("shots", None, common.quiet);
-        let mut shots = 0;
-        let result = solver.solve(self.until, |solver| {
-            progress.add(solver.state().shots - shots);
-            shots = solver.state().shots;
-            progress.note(format!("{:.2e} unshot", solver.balance().unshot_fraction()));
-            true
-        });
-        drop(progress);
-        result.map_err(|error| failed(&error))?;
+        let solution = match solution {
+            Err(RadiosityError::Dark) => return Ok((shader, Solved::default())),
+            solution => solution.map_err(|error| failed(&error))?,
+        };
         let solve_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
         let count = scene.polygon_count();
         let mut indirect =
-            Indirect::new(&patches, &mesh.polygons(), count, solver.emission(), solver.radiosity()).with_hosts(hosts);
+            Indirect::new(&patches, &mesh.polygons(), count, &solution.emission, &solution.radiosity).with_hosts(hosts);
         if !self.gather && shading == Shading::Contour {
             let options = SurfaceOptions { detail: self.detail, depth: self.depth, ..SurfaceOptions::default() };
+            let mut shown = vec![false; patches.polygon_count()];
+            for camera in cameras {
+                let by_camera = shader.shown(&indirect, camera.eye, &camera.frustum);
+                let by_camera = by_camera.map_err(|error| camera.place(failed(&error)))?;
+                shown.iter_mut().zip(by_camera).for_each(|(shown, is_shown)| *shown |= is_shown);
+            }
             let views = SharedProgress::new("views from corners", None, common.quiet);
             indirect = indirect
-                .interpolated_watched(&exchange, &mesh.regions(), &options, &|count| views.add(count))
+                .interpolated_on(&shown, &exchange, &mesh.regions(), &options, &|count| views.add(count))
                 .map_err(|error| failed(&error))?;
         }
         let solved = Solved {
             patches: patches.polygon_count(),
-            shots: solver.state().shots,
+            shots: solution.shots,
+            bounces: solution.bounces,
             corners: indirect.corner_count(),
             solve_s,
             surface_s: start.elapsed().as_secs_f64(),
@@ -113,4 +123,41 @@ impl Interreflection {
         let shader = shader.with_indirect(indirect).map_err(|error: RenderError| failed(&error))?;
         Ok((shader, solved))
     }
+
+    fn by_views(
+        &self,
+        scene: &Scene,
+        exchange: &Exchange,
+        longest: f64,
+        common: &Common,
+    ) -> Result<Solution, RadiosityError> {
+        // What has no solution is not looked at.
+        Solver::new(scene, exchange, SolverOptions::default())?;
+        let progress = SharedProgress::new("rows", Some(exchange.patches().len()), common.quiet);
+        let rows = exchange.viewed_rows(0.5 * longest, MOST_FACTORS, &|count| progress.add(count))?;
+        let Gathered { emission, radiosity, bounces } = Gathered::new(scene, exchange, &rows, self.until)?;
+        Ok(Solution { emission, radiosity, shots: 0, bounces })
+    }
+
+    fn by_shooting(&self, scene: &Scene, exchange: &Exchange, common: &Common) -> Result<Solution, RadiosityError> {
+        let mut solver = Solver::new(scene, exchange, SolverOptions::default())?;
+        let mut progress = Progress::new("shots", None, common.quiet);
+        let mut shots = 0;
+        solver.solve(self.until, |solver| {
+            progress.add(solver.state().shots - shots);
+            shots = solver.state().shots;
+            progress.note(format!("{:.2e} unshot", solver.balance().unshot_fraction()));
+            true
+        })?;
+        let [emission, radiosity] = [solver.emission(), solver.radiosity()].map(<[DVec3]>::to_vec);
+        Ok(Solution { emission, radiosity, shots, bounces: 0 })
+    }
+}
+
+/// The radiosity of patches, and how many shots it took, or how many bounces.
+struct Solution {
+    emission: Vec<DVec3>,
+    radiosity: Vec<DVec3>,
+    shots: usize,
+    bounces: usize,
 }

@@ -173,7 +173,7 @@ impl Render {
         let (order, order_s) = self.order(&scene)?;
         let options = ShaderOptions { shading: self.shading, mirrors: self.mirrors, ..ShaderOptions::default() };
         let shader = Shader::with_brdfs(order, brdfs, lighting, options).map_err(|error| self.refused(&error))?;
-        let (shader, solved) = self.interreflection.add_to(shader, self.shading, &self.scene, common)?;
+        let (shader, solved) = self.interreflection.add_to(shader, self.shading, &cameras, &self.scene, common)?;
         let mut exposure = self.exposure;
         let (mut frame_ms, mut points) = (Vec::new(), 0);
         let pixels = (self.size.x as usize * self.size.y as usize).saturating_mul(cameras.len());
@@ -309,7 +309,7 @@ impl Render {
         if common.json {
             return print_json(&json!({
                 "schema": "nusselt.render/1", "size": self.size.to_array(), "frames": frame_ms.len(), "points": points,
-                "exposure": exposure, "patches": solved.patches, "shots": solved.shots, "corners": solved.corners,
+                "exposure": exposure, "patches": solved.patches, "shots": solved.shots, "bounces": solved.bounces, "corners": solved.corners,
                 "solve_s": solved.solve_s, "surface_s": solved.surface_s, "render_s": render_s, "timing": timing,
                 "files": files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>(),
             }));
@@ -322,8 +322,13 @@ impl Render {
         lines.add("pixels", format!("{} x {}{of}", self.size.x, self.size.y));
         lines.add("shaded", format!("{points} points"));
         if solved.patches > 0 {
-            let Solved { patches, shots, corners, solve_s, surface_s } = solved;
-            lines.add("patches", format!("{patches}, which shot {shots} times in {solve_s:.2} s"));
+            let Solved { patches, shots, bounces, corners, solve_s, surface_s } = solved;
+            let did = if *bounces > 0 {
+                format!("lit each other by {bounces} bounces")
+            } else {
+                format!("shot {shots} times")
+            };
+            lines.add("patches", format!("{patches}, which {did} in {solve_s:.2} s"));
             if *corners > 0 {
                 lines.add("corners", format!("{corners} with a view each, in {surface_s:.2} s"));
             }
