@@ -1,6 +1,6 @@
 //! Which elements of a facet are seen wholly from an element, which not at all, and which it takes views to tell.
 
-use super::contacts::{contacts, parts};
+use super::contacts::{TOUCHES, contacts, parts};
 use super::element::{Element, Elements};
 use super::facets::Facets;
 use super::shaft::{Blocker, Blocks, Lies, Shaft};
@@ -146,7 +146,7 @@ impl Blockers<'_> {
     /// An element in parts between the lines where facets stand on it or pass through it.
     pub(super) fn parts(&self, element: &Element) -> Vec<Vec<DVec3>> {
         // Corners of a mesh are rounded.
-        let reach = element.radius * (1e-12 + element.rounding);
+        let reach = element.radius * (1e-12 + element.rounding) + TOUCHES;
         let low = element.ring.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)) - reach;
         let high = element.ring.iter().fold(DVec3::NEG_INFINITY, |high, &p| high.max(p)) + reach;
         let others =
@@ -223,8 +223,10 @@ impl Blockers<'_> {
         }
         let placement = self.facets.placement;
         let (low, high) = (placement.local(solid.bounds.low), placement.local(solid.bounds.high));
+        // Not by rounding alone: points of it may not be, then.
         let is_outside = |axis: usize| {
-            from.ring.iter().all(|p| p[axis] < low[axis]) || from.ring.iter().all(|p| p[axis] > high[axis])
+            from.ring.iter().all(|p| p[axis] < low[axis] - TOUCHES)
+                || from.ring.iter().all(|p| p[axis] > high[axis] + TOUCHES)
         };
         shown == solid.inside && (0..3).any(is_outside)
     }

@@ -68,6 +68,10 @@ impl ElementRows<'_> {
         }
         let elements = self.blockers.elements;
         let [from, to] = [number, other].map(|k| &elements.all[k as usize]);
+        let touches = self.touching(number, &mut space.look).ok()?;
+        if let Some(touch) = touches.iter().find(|touch| touch.other == other) {
+            return Some(from_one(touch.exchange, from));
+        }
         self.stand_on(from, space);
         let RowSpace { around: Some(around), parts, hidden, .. } = space else { return None };
         let mut found = None;

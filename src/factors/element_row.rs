@@ -1,6 +1,7 @@
 //! Where what leaves one element goes.
 
 use super::blockers::{Around, Blockers, Seen};
+use super::contacts::take_out;
 use super::cubature::{Add, Cubature, Division};
 use super::element::Element;
 use super::row::Share;
@@ -8,6 +9,7 @@ use super::row_space::{Found, RowSpace};
 use super::seen::Looker;
 use super::shaft::Lies;
 use super::shared::{Shared, Told};
+use super::touching::{Touch, strip};
 use super::{ExchangeError, Sides};
 use glam::DVec3;
 
@@ -42,6 +44,8 @@ pub(super) fn explained(tolerance: f64) -> f64 {
 /// Computes rows of elements.
 pub(super) struct ElementRows<'a> {
     pub(super) blockers: Blockers<'a>,
+    /// The facets that each is face to face with.
+    pub(super) touching: &'a [Vec<u32>],
     pub(super) shared: &'a Shared,
     pub(super) looker: Looker<'a>,
     pub(super) most_views: usize,
@@ -70,15 +74,19 @@ impl ElementRows<'_> {
         if effort.is_shared {
             self.listen(number, space);
         }
-        self.classify(number, tolerance * OF_TOLERANCE, space);
-        self.integrate_all(number, effort, space);
+        self.touch(number, space)?;
+        let is_covered = space.parts.is_empty();
+        if !is_covered {
+            self.classify(number, tolerance * OF_TOLERANCE, space);
+            self.integrate_all(number, effort, space);
+        }
         if effort.is_shared && self.is_shareable(number) {
             self.shared.complete(number, &space.told);
         }
         // In an order that does not depend on who has told what.
         space.columns.sort_unstable();
         space.columns.dedup();
-        if is_complete(space, tolerance) {
+        if is_covered || is_complete(space, tolerance) {
             return Ok(());
         }
         // What is left: backs, the background, and what too much may be in front of.
@@ -131,6 +139,23 @@ impl ElementRows<'_> {
                 space.add(elements.all[other as usize].patch, from_one(exchange, &elements.all[number as usize]));
             }
         }
+    }
+
+    /// Takes out what is face to face with others, which get what leaves it.
+    fn touch(&self, number: u32, space: &mut RowSpace) -> Result<(), ExchangeError> {
+        let elements = self.blockers.elements;
+        let from = &elements.all[number as usize];
+        let frame = &elements.frames[from.facet as usize];
+        for Touch { other, exchange, ring } in self.touching(number, &mut space.look)? {
+            take_out(&mut space.parts, frame, &ring, strip(from));
+            if !std::mem::replace(&mut space.found.is_told[other as usize], true) {
+                space.complete.push(other);
+                space.found.seen[other as usize] = Seen::Integrated;
+                space.told.push((other, Told::Exchange(exchange)));
+                space.add(elements.all[other as usize].patch, from_one(exchange, from));
+            }
+        }
+        Ok(())
     }
 
     /// True if what the element exchanges with others of which that is true does not depend on which of them is asked: if it is all of a patch, and

@@ -9,6 +9,7 @@ use super::row::{Entry, PatchInfo, Row, Share};
 use super::row_space::RowSpace;
 use super::seen::{Columns, Looker};
 use super::shared::{self, Shared};
+use super::touching::touching_facets;
 use super::tree::ElementTree;
 use super::{ExchangeError, ExchangeOptions, PatchMesh, PatchPlan};
 use crate::parallel;
@@ -41,6 +42,8 @@ pub struct Exchange {
     pub(super) facets: Facets,
     pub(super) elements: Elements,
     pub(super) trees: Vec<ElementTree>,
+    /// The facets that each is face to face with.
+    touching: Vec<Vec<u32>>,
     pub(super) options: ExchangeOptions,
     /// Areas as they are in the scene.
     patches: Vec<PatchInfo>,
@@ -84,7 +87,8 @@ impl Exchange {
             patch.area = facets.placement.global_area(patch.area);
             patch.shape = elements.shape(number, facets.placement);
         }
-        Ok(Self { facets, elements, trees, options, patches })
+        let touching = touching_facets(&facets, &elements.frames);
+        Ok(Self { facets, elements, trees, touching, options, patches })
     }
 
     /// The patches, in the order of their numbers: of polygons, theirs; of objects, that of the first polygons of each; of a mesh, by polygon, then
@@ -191,10 +195,10 @@ impl Exchange {
     }
 
     fn element_rows<'a>(&'a self, shared: &'a Shared) -> ElementRows<'a> {
-        let Self { facets, elements, trees, options, .. } = self;
+        let Self { facets, elements, trees, touching, options, .. } = self;
         let blockers = Blockers { facets, elements, trees };
         let looker = Looker { facets, elements, trees, sides: options.sides };
-        ElementRows { blockers, shared, looker, most_views: options.most_views }
+        ElementRows { blockers, touching, shared, looker, most_views: options.most_views }
     }
 
     /// The row before its residue is placed.

@@ -2,7 +2,7 @@
 //!
 //! This decides where parts end, and nothing about what is seen from them.
 
-use super::contacts::contacts;
+use super::contacts::{TOUCHES, contacts};
 use super::facets::{Facet, Facets};
 use super::shaft::Lies;
 use super::shape::{Frame, sides};
@@ -17,7 +17,7 @@ pub(super) fn footprints(facets: &Facets, frames: &[Frame], longest: f64) -> Vec
     let size = |[low, high]: [DVec3; 2]| low.distance(high);
     let reach = |facet: usize| REACH * longest.min(size(boxes[facet]));
     let mut found = vec![Vec::new(); boxes.len()];
-    near_pairs(&boxes, REACH * longest, |a, b| {
+    near_pairs(&boxes, TOUCHES.max(REACH * longest), |a, b| {
         for [facet, other] in [[a, b], [b, a]] {
             add(&mut found[facet], facet as u32, other as u32, facets, &frames[facet], reach(facet));
         }
@@ -35,21 +35,27 @@ fn add(found: &mut Vec<[DVec2; 2]>, facet: u32, other: u32, facets: &Facets, fra
             }
         }
         Lies::Front | Lies::Across => {
+            // What is in front of it by rounding only may hang below it.
+            let heights = ring.iter().map(|&p| frame.height(p));
+            let [low, high] = heights.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)]);
+            if low < -TOUCHES && high <= TOUCHES {
+                return;
+            }
             found.extend(contacts(facet, facets, frame, &[other]));
-            let is_near = |p: DVec3| (0.0..=reach).contains(&frame.height(p));
+            let is_near = |p: DVec3| (-TOUCHES..=reach.max(TOUCHES)).contains(&frame.height(p));
             let near = sides(ring).filter(|side| side.iter().all(|&p| is_near(p)));
             found.extend(near.map(|side| side.map(|p| frame.flat(p))));
         }
     }
 }
 
-fn bounds(ring: &[DVec3]) -> [DVec3; 2] {
+pub(super) fn bounds(ring: &[DVec3]) -> [DVec3; 2] {
     ring.iter().fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], &p| [low.min(p), high.max(p)])
 }
 
 /// Calls `found` with all pairs of boxes that are not farther apart than `reach`, in an order that depends on nothing else: swept along the axis on which their lengths
 /// are the smallest part of the whole.
-fn near_pairs(boxes: &[[DVec3; 2]], reach: f64, mut found: impl FnMut(usize, usize)) {
+pub(super) fn near_pairs(boxes: &[[DVec3; 2]], reach: f64, mut found: impl FnMut(usize, usize)) {
     let whole = boxes.iter().fold(DVec3::NEG_INFINITY, |m, b| m.max(b[1]))
         - boxes.iter().fold(DVec3::INFINITY, |m, b| m.min(b[0]));
     let lengths: DVec3 = boxes.iter().map(|[low, high]| *high - *low).sum();

@@ -40,6 +40,7 @@ mod seen;
 mod shaft;
 mod shape;
 mod shared;
+mod touching;
 mod tree;
 mod viewed;
 

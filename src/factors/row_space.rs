@@ -19,7 +19,7 @@ pub(super) struct RowSpace {
     /// The element in parts within which what is seen changes steadily.
     pub(super) parts: Vec<Vec<DVec3>>,
     pub(super) found: Found,
-    /// Those whose rows have told this one.
+    /// Those of which this row need not find out anything more: whose rows have told it, and which it is face to face with.
     pub(super) complete: Vec<u32>,
     /// What others may be told by this row.
     pub(super) told: Vec<(u32, Told)>,

@@ -1,6 +1,7 @@
 //! What casts shadows on an element: facets, and bodies of facets, as they are seen from another element.
 
 use super::bodies::{Body, FacetSide};
+use super::contacts::TOUCHES;
 use super::element::{Element, Elements};
 use super::facets::Facets;
 use super::shaft::Lies;
@@ -89,7 +90,7 @@ impl Screens {
             // One facet alone casts the same shadow as its body does in the shaft.
             let whole = body_of(facet).filter(|&body| {
                 between.iter().filter(|other| is_of(body)(other)).count() > 1
-                    && is_seen_from_outside(&facets.bodies.all[body as usize], facets, from)
+                    && is_seen_from_outside(&facets.bodies.all[body as usize], facets, elements, from)
             });
             match whole {
                 None => self.add_facet(facets, elements, [from, to], facet),
@@ -214,8 +215,10 @@ impl Screens {
     }
 }
 
-/// True if no line of sight from an element meets the inside of a body before its outside: it is outside of the body, and not in front of what that lacks.
-fn is_seen_from_outside(body: &Body, facets: &Facets, from: &Element) -> bool {
+/// True if no line of sight from an element meets the inside of a body before its outside: it is outside of the body, and not in front of what that lacks. Where
+/// it is outside by rounding only, points on it are not known to be.
+fn is_seen_from_outside(body: &Body, facets: &Facets, elements: &Elements, from: &Element) -> bool {
+    let is_clear = |facet: u32| from.ring.iter().any(|&p| elements.frames[facet as usize].height(p) > TOUCHES);
     body.lacks.is_none_or(|face| matches!(Lies::of(&from.ring, face), Lies::Behind | Lies::On))
-        && body.facets.iter().any(|&facet| facets.lies_of(from, facet) == Lies::Front)
+        && body.facets.iter().any(|&facet| facets.lies_of(from, facet) == Lies::Front && is_clear(facet))
 }

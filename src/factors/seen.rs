@@ -1,5 +1,6 @@
 //! What is seen from one point of an element, by patches.
 
+use super::contacts::TOUCHES;
 use super::element::Elements;
 use super::facets::Facets;
 use super::shape::{Frame, clip, sides, turn};
@@ -9,6 +10,9 @@ use crate::contour::{Cell, ContourImage, Domain, ViewOptions, ViewSpace, Viewpoi
 use crate::integral::Receiver;
 use crate::scene::{PieceId, PolygonId, Side};
 use glam::{DVec2, DVec3};
+
+/// What is shut off sees no more of anything else than gaps left by rounding show.
+pub(super) const SHUT: f64 = 1e-9;
 
 /// Takes views and tells patches apart in them.
 pub(super) struct Looker<'a> {
@@ -60,15 +64,8 @@ impl Looker<'_> {
         is_wanted: impl Fn(u32) -> bool,
         mut share: impl FnMut(u32, f64),
     ) -> Result<(), ExchangeError> {
-        let scene = self.facets.order.scene();
-        let piece: PieceId =
-            scene.polygon(PolygonId(facet)).pieces().next().map_or(PieceId(0), super::super::scene::PieceRef::id);
-        let fails = |problem: String| ExchangeError::NoView { point, problem };
-        let viewpoint =
-            Viewpoint::on_piece(scene, piece, Side::Front, point).map_err(|error| fails(error.to_string()))?;
         let LookSpace { view, flat, parts, corners, stack, met } = space;
-        let image = self.facets.order.view_in(view, &viewpoint, &Domain::Above, &ViewOptions::default());
-        let image: &ContourImage = image.map_err(|error| fails(error.to_string()))?;
+        let (viewpoint, image) = self.view(view, facet, point)?;
         let receiver = Receiver::new(self.elements.frames[facet as usize].normal);
         let columns = Columns { patches: self.elements.patches.len() as u32 };
         for cell in image.cells() {
@@ -127,6 +124,62 @@ impl Looker<'_> {
             }
         }
         Ok(())
+    }
+
+    /// True if nothing is seen from the point of a facet's front nearest to `point` but backs, and fronts where they are face to face with others; `touching` has
+    /// for each facet those that it is face to face with.
+    pub(super) fn is_shut(
+        &self,
+        space: &mut LookSpace,
+        facet: u32,
+        point: DVec3,
+        touching: &[Vec<u32>],
+    ) -> Result<bool, ExchangeError> {
+        let LookSpace { view, corners, flat, .. } = space;
+        let (viewpoint, image) = self.view(view, facet, point)?;
+        let receiver = Receiver::new(self.elements.frames[facet as usize].normal);
+        let mut open = 0.0;
+        for cell in image.cells() {
+            let is_shut = match (cell.polygon(), cell.side()) {
+                (Some(seen), Some(Side::Front)) => {
+                    let touching = &touching[seen.index()];
+                    // In one plane fronts win over the backs of what they stand on.
+                    touching.contains(&facet) || {
+                        flatten(cell, viewpoint.eye(), &self.elements.frames[seen.index()], flat);
+                        touching.iter().any(|&other| self.covers(other, seen.0, flat))
+                    }
+                }
+                (seen, _) => seen.is_some(),
+            };
+            if !is_shut {
+                open += receiver.factor_of(cell.boundary(), corners);
+            }
+        }
+        Ok(open <= SHUT)
+    }
+
+    /// True if a facet that is face to face with another one covers all of a part of it.
+    fn covers(&self, facet: u32, other: u32, part: &[DVec2]) -> bool {
+        let frame = &self.elements.frames[other as usize];
+        let ring: Vec<DVec2> = self.facets.all[facet as usize].ring.iter().rev().map(|&p| frame.flat(p)).collect();
+        part.len() >= 3 && sides(&ring).all(|[a, b]| part.iter().all(|&p| turn(a, b, p) >= -TOUCHES * a.distance(b)))
+    }
+
+    /// What is seen from the point of a facet's front nearest to `point`.
+    fn view<'s>(
+        &self,
+        space: &'s mut ViewSpace,
+        facet: u32,
+        point: DVec3,
+    ) -> Result<(Viewpoint, &'s ContourImage), ExchangeError> {
+        let scene = self.facets.order.scene();
+        let piece: PieceId =
+            scene.polygon(PolygonId(facet)).pieces().next().map_or(PieceId(0), super::super::scene::PieceRef::id);
+        let fails = |problem: String| ExchangeError::NoView { point, problem };
+        let viewpoint =
+            Viewpoint::on_piece(scene, piece, Side::Front, point).map_err(|error| fails(error.to_string()))?;
+        let image = self.facets.order.view_in(space, &viewpoint, &Domain::Above, &ViewOptions::default());
+        Ok((viewpoint, image.map_err(|error| fails(error.to_string()))?))
     }
 }
 

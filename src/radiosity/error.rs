@@ -21,6 +21,15 @@ pub enum RadiosityError {
     /// Nothing emits from its front.
     #[error("no polygon emits; give a material an emission (Ke)")]
     Dark,
+    /// Numbers do not hold the power that is emitted.
+    #[error(
+        "polygon {polygon}: its power, or that of all up to it, is more than numbers hold; use a smaller emission (Ke) \
+         or a larger unit of length"
+    )]
+    TooBright {
+        /// The polygon with which it is too much.
+        polygon: PolygonId,
+    },
     /// What surfaces reflect in a closed scene is not less than what they get: it would never end.
     #[error("nothing is absorbed after {shots} shots; some surface has to reflect less than 1")]
     Endless {
@@ -35,8 +44,8 @@ pub enum RadiosityError {
         /// How many it should have.
         expected: usize,
     },
-    /// A state has numbers that are not finite.
-    #[error("the state of patch {patch} is not finite; solve it anew")]
+    /// A state has numbers that are not finite, or too large.
+    #[error("the state of patch {patch} is not finite, or too large; solve it anew")]
     BadState {
         /// The first such patch.
         patch: usize,

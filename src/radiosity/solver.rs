@@ -88,7 +88,8 @@ impl<'a> Solver<'a> {
     /// Starts with what patches emit. The exchange is that of the scene, patch by polygon.
     ///
     /// # Errors
-    /// If a material has no reflectance ([`Material::reflectances`](crate::scene::Material::reflectances)), or if nothing emits.
+    /// If a material has no reflectance ([`Material::reflectances`](crate::scene::Material::reflectances)), if nothing emits, or if
+    /// numbers do not hold the power that is emitted.
     pub fn new(scene: &Scene, exchange: &'a Exchange, options: SolverOptions) -> Result<Self, RadiosityError> {
         let (emission, reflectance) = surfaces(scene, exchange)?;
         let state = SolverState { radiosity: emission.clone(), unshot: emission.clone(), ..SolverState::default() };
@@ -121,8 +122,12 @@ impl<'a> Solver<'a> {
         }
         let is_bad = |v: &DVec3| !v.is_finite();
         let first_bad = |list: &[DVec3]| list.iter().position(is_bad);
-        let bad = [&state.radiosity, &state.unshot, &state.guess].into_iter().filter_map(|list| first_bad(list)).min();
-        if let Some(patch) = bad.or(state.gone.iter().any(is_bad).then_some(0)) {
+        let lists = [&state.radiosity, &state.unshot, &state.guess];
+        let bad = lists.into_iter().filter_map(|list| first_bad(list)).min();
+        // Nor may any of their powers be more than numbers hold.
+        let is_bad_power = |list: &Vec<DVec3>| is_bad(&(ROOM * self.power(list)));
+        if let Some(patch) = bad.or((state.gone.iter().any(is_bad) || lists.into_iter().any(is_bad_power)).then_some(0))
+        {
             return Err(RadiosityError::BadState { patch });
         }
         self.state = state;
@@ -326,6 +331,22 @@ impl<'a> Solver<'a> {
     }
 }
 
+/// Powers are added up, and multiplied by what anticipates reflections: so many times their sum has to be a number.
+const ROOM: f64 = 1e6;
+
+/// Checks that something emits, and that numbers hold all of it.
+fn check_power(patches: &[PatchInfo], emission: &[DVec3]) -> Result<(), RadiosityError> {
+    let mut sum = 0.0;
+    for (&PatchInfo { polygon, area, .. }, &emission) in patches.iter().zip(emission) {
+        sum += strength(emission) * area;
+        // An area may be infinite, too.
+        if !(ROOM * strength(emission)).is_finite() || !(ROOM * sum).is_finite() {
+            return Err(RadiosityError::TooBright { polygon });
+        }
+    }
+    if sum > 0.0 { Ok(()) } else { Err(RadiosityError::Dark) }
+}
+
 /// What each patch emits, and what part it reflects.
 pub(super) fn surfaces(scene: &Scene, exchange: &Exchange) -> Result<(Vec<DVec3>, Vec<DVec3>), RadiosityError> {
     let (mut emission, mut reflectance) = (Vec::new(), Vec::new());
@@ -338,9 +359,6 @@ pub(super) fn surfaces(scene: &Scene, exchange: &Exchange) -> Result<(Vec<DVec3>
         emission.push(DVec3::from(material.emission) * PI);
         reflectance.push(matt);
     }
-    let areas = exchange.patches().iter().map(|patch| patch.area);
-    if !emission.iter().zip(areas).any(|(&emission, area)| strength(emission) * area > 0.0) {
-        return Err(RadiosityError::Dark);
-    }
+    check_power(exchange.patches(), &emission)?;
     Ok((emission, reflectance))
 }

@@ -38,11 +38,11 @@ pub(crate) struct Radiosity {
     /// are what part is reflected
     scene: PathBuf,
     /// Mesh polygons into patches with edges of at most this length, in scene units, that end where others stand on them
-    /// [default: polygons as they are, uncut: what stands on one darkens all of it]
+    /// [default: polygons as they are, cut where others stand on them]
     #[arg(long, value_name = "SIZE", value_parser = parse_size, allow_hyphen_values = true)]
     patch: Option<f64>,
     /// Halve patches, in both directions, where the light on them changes, and go on; so many times. Without --patch, starting
-    /// from polygons as they are
+    /// from polygons cut where others stand on them
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u32).range(0..=6))]
     subdivide: u32,
     /// Halve patches on which radiosities differ by more than this part of their mean, or of the mean of all surfaces if that is more

@@ -48,15 +48,9 @@ impl Work<'_> {
     }
 
     pub(super) fn first_stage(&self) -> Result<Stage, Failure> {
-        let longest = self.asked.patch.or((self.asked.subdivide > 0).then_some(f64::INFINITY));
-        let stage = match longest {
-            Some(longest) => {
-                let mesh = PatchMesh::new(self.scene, longest).map_err(|error| self.asked.about(&error))?;
-                Stage::of_mesh(mesh, self.exchange_options())
-            }
-            None => Stage::of_polygons(self.scene, self.exchange_options()),
-        };
-        stage.map_err(|error| self.asked.about(&error))
+        let longest = self.asked.patch.unwrap_or(f64::INFINITY);
+        let mesh = PatchMesh::new(self.scene, longest).map_err(|error| self.asked.about(&error))?;
+        Stage::of_mesh(mesh, self.exchange_options()).map_err(|error| self.asked.about(&error))
     }
 
     /// Solves, and gives what there is in the end.
@@ -69,11 +63,11 @@ impl Work<'_> {
         let mut state = None;
         if let Some(kept) = self.kept(&keeping.key)? {
             for list in &kept.halved {
-                let mesh = stage.mesh.as_ref().map(|mesh| mesh.halved(|patch| is_in(list, patch)).0);
-                stage.mesh = mesh;
+                stage.mesh = stage.mesh.halved(|patch| is_in(list, patch)).0;
             }
-            if let Some(mesh) = stage.mesh.take_if(|_| !kept.halved.is_empty()) {
-                stage = Stage::of_mesh(mesh, self.exchange_options()).map_err(|error| self.asked.about(&error))?;
+            if !kept.halved.is_empty() {
+                stage =
+                    Stage::of_mesh(stage.mesh, self.exchange_options()).map_err(|error| self.asked.about(&error))?;
             }
             keeping.halved = kept.halved;
             state = Some(kept.solver);
@@ -134,7 +128,6 @@ impl Work<'_> {
 
     /// Halves those patches on which the light changes; none if there are none.
     fn halved(&self, stage: &Stage, solver: &Solver<'_>) -> Result<Option<Halved>, Failure> {
-        let Some(mesh) = &stage.mesh else { return Ok(None) };
         let gather = Gather::new(&stage.exchange, solver.emission(), solver.reflectance(), solver.radiosity());
         let uneven = uneven_patches(&stage.patches, &stage.regions, &gather, self.asked.gradient)
             .map_err(|error| self.asked.about(&error))?;
@@ -142,7 +135,7 @@ impl Work<'_> {
         if list.is_empty() {
             return Ok(None);
         }
-        let (mesh, parents) = mesh.halved(|patch| uneven[patch]);
+        let (mesh, parents) = stage.mesh.halved(|patch| uneven[patch]);
         Ok(Some(Halved { mesh, parents, list }))
     }
 

@@ -1,14 +1,13 @@
 //! The patches as they are, until some are halved.
 
-use nusselt::factors::{Exchange, ExchangeError, ExchangeOptions, PatchMesh, PatchPlan};
+use nusselt::factors::{Exchange, ExchangeError, ExchangeOptions, PatchMesh};
 use nusselt::scene::{PolygonId, Scene};
 
 /// More patches than this are not made.
 const MOST_PATCHES: usize = 4_000_000;
 
 pub(super) struct Stage {
-    /// None if patches are polygons as they are.
-    pub(super) mesh: Option<PatchMesh>,
+    pub(super) mesh: PatchMesh,
     /// Polygon k is patch k.
     pub(super) patches: Scene,
     /// The polygon that each patch is part of.
@@ -19,18 +18,12 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    pub(super) fn of_polygons(scene: &Scene, options: ExchangeOptions) -> Result<Self, ExchangeError> {
-        let of: Vec<PolygonId> = (0..scene.polygon_count() as u32).map(PolygonId).collect();
-        let exchange = Exchange::new(scene, PatchPlan::Polygons, options)?;
-        Ok(Self { mesh: None, patches: scene.clone(), regions: of.clone(), of, exchange })
-    }
-
     pub(super) fn of_mesh(mesh: PatchMesh, options: ExchangeOptions) -> Result<Self, ExchangeError> {
         if mesh.len() > MOST_PATCHES {
             return Err(ExchangeError::TooManyPatches);
         }
         let patches = mesh.patches().map_err(ExchangeError::Facets)?;
         let exchange = Exchange::of_mesh(&mesh, options)?;
-        Ok(Self { patches, of: mesh.polygons(), regions: mesh.regions(), exchange, mesh: Some(mesh) })
+        Ok(Self { patches, of: mesh.polygons(), regions: mesh.regions(), exchange, mesh })
     }
 }

@@ -1,0 +1,102 @@
+//! A room with a block on its floor, and the same turned in space: its corners are rounded then, and the block stands within rounding of the floor, above it, below
+//! it or through it.
+
+use glam::{DMat3, DVec3};
+use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan};
+use nusselt::scene::{Material, Scene, SceneBuilder};
+use std::f64::consts::PI;
+
+/// Of each factor.
+const TOLERANCE: f64 = 1e-3;
+
+/// A room of 4 x 3 x 2.5, its fronts inside, and a block of 1 that stands on its floor: polygons 0 and 6 are the floor and the bottom of the block.
+fn room(turn: DMat3) -> SceneBuilder {
+    let cuboid = |low: [f64; 3], high: [f64; 3]| -> Vec<[f64; 3]> {
+        let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
+        (0..8).map(corner).map(|p| (turn * DVec3::from(p)).to_array()).collect()
+    };
+    // Counter-clockwise seen from inside, the one below first.
+    let inside = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let outside = inside.map(|face| face.into_iter().rev().collect());
+    let builder = Scene::builder();
+    let builder = builder.mesh(&cuboid([0.0; 3], [4.0, 3.0, 2.5]), &inside.map(|face| face.to_vec()), grey());
+    builder.mesh(&cuboid([1.0, 1.0, 0.0], [2.0, 2.0, 1.0]), &outside, grey())
+}
+
+fn built(room: SceneBuilder) -> Scene {
+    room.build().expect("a scene")
+}
+
+fn grey() -> Material {
+    Material::new("grey")
+}
+
+/// Factors between polygons, means over those of their patches, and what they may be off by.
+struct Between {
+    factors: Vec<Vec<f64>>,
+    estimates: Vec<Vec<f64>>,
+    backs: f64,
+}
+
+impl Between {
+    fn of(scene: &Scene, plan: PatchPlan) -> Self {
+        // As many points or views as that are enough for every factor: what jumps with rounding would take all there are.
+        let options = ExchangeOptions { tolerance: TOLERANCE, most_views: 3000, ..ExchangeOptions::default() };
+        let exchange = Exchange::new(scene, plan, options).expect("patches");
+        let count = scene.polygon_count();
+        let mut areas = vec![0.0; count];
+        exchange.patches().iter().for_each(|patch| areas[patch.polygon.index()] += patch.area);
+        let (mut factors, mut estimates) = (vec![vec![0.0; count]; count], vec![vec![0.0; count]; count]);
+        let mut backs = 0.0;
+        for (number, patch) in exchange.patches().iter().enumerate() {
+            let row = exchange.row(number).expect("a row that closes");
+            assert!((row.sum() - 1.0).abs() < 1e-12, "{}", row.sum());
+            let (from, part) = (patch.polygon.index(), patch.area / areas[patch.polygon.index()]);
+            for entry in &row.entries {
+                assert!(entry.share.error <= TOLERANCE, "{number}: {entry:?}");
+                let to = exchange.patches()[entry.column as usize].polygon.index();
+                factors[from][to] += part * entry.share.factor;
+                estimates[from][to] += part * entry.share.error;
+            }
+            backs += row.backs.factor;
+        }
+        Self { factors, estimates, backs }
+    }
+}
+
+#[test]
+fn factors_of_a_turned_room_are_those_of_the_room() {
+    let turns = [
+        DMat3::from_rotation_x(0.7) * DMat3::from_rotation_z(0.3),
+        DMat3::from_rotation_y(1.1) * DMat3::from_rotation_x(0.2),
+        DMat3::from_axis_angle(DVec3::new(1.0, 2.0, 3.0).normalize(), 2.0),
+        DMat3::from_rotation_z(0.25 * PI),
+    ];
+    for plan in [PatchPlan::Mesh { longest_edge: 1.2 }, PatchPlan::Polygons] {
+        let straight = Between::of(&built(room(DMat3::IDENTITY)), plan);
+        for (number, turn) in turns.into_iter().enumerate() {
+            let turned = Between::of(&built(room(turn)), plan);
+            for (from, to) in (0..12).flat_map(|from| (0..12).map(move |to| (from, to))) {
+                let [a, b] = [&straight, &turned].map(|room| room.factors[from][to]);
+                // Of residues, as much as their estimates is placed on factors that may be off by as much. Rounding is what remains where they are 0.
+                let allowed = 2.0 * (straight.estimates[from][to] + turned.estimates[from][to]) + 1e-12;
+                assert!((a - b).abs() <= allowed, "{number} {plan:?}: {from} to {to}: {a} {b} {allowed:e}");
+            }
+            // All that leaves the bottom arrives at the floor below it, a twelfth of the whole, and nothing is lost to the inside.
+            assert!((turned.factors[6][0] - 1.0).abs() < 1e-6, "{number}: {:?}", turned.factors[6]);
+            assert!((turned.factors[0][6] - 1.0 / 12.0).abs() < 1e-6, "{number}: {:?}", turned.factors[0]);
+            assert!(turned.backs < 1e-6, "{number}: {}", turned.backs);
+        }
+    }
+}
+
+/// Both faces of a thin wall are in one plane, too, and see the rooms on their sides.
+#[test]
+fn faces_of_a_thin_wall_are_not_face_to_face() {
+    let wall = [[3.0, 0.0, 0.0], [3.0, 3.0, 0.0], [3.0, 3.0, 2.5], [3.0, 0.0, 2.5]];
+    let scene = room(DMat3::IDENTITY).mesh(&wall, &[vec![0, 1, 2, 3], vec![3, 2, 1, 0]], grey());
+    let between = Between::of(&built(scene), PatchPlan::Polygons);
+    assert!(between.factors[12][13].abs().max(between.factors[13][12].abs()) <= 0.0);
+    // One of them sees the narrow part of the room, the other one the block.
+    assert!(between.factors[12][5] > 0.3 && between.factors[13][4] > 0.05 && between.factors[13][11] > 0.01);
+}
