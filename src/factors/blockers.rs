@@ -3,10 +3,11 @@
 use super::contacts::{TOUCHES, contacts, parts};
 use super::element::{Element, Elements};
 use super::facets::Facets;
-use super::shaft::{Blocker, Blocks, Lies, Shaft};
+use super::shaft::{Blocker, Blocks, Corner, Lies, Shaft};
 use super::tree::ElementTree;
 use crate::bvh::Content;
 use crate::contour::SceneOrder;
+use crate::exact::U;
 use crate::scene::Side;
 use glam::DVec3;
 
@@ -53,11 +54,57 @@ pub(super) enum Seen {
     Unknown,
 }
 
+/// A box around an element and a part of a facet: what is outside of it is outside of the shafts to all that is in the part, too.
+struct Reach {
+    low: DVec3,
+    high: DVec3,
+}
+
+impl Reach {
+    fn of(ring: &[DVec3], part: &[Corner]) -> Self {
+        let all = || ring.iter().copied().chain(part.iter().map(|corner| corner.at));
+        let low = all().fold(DVec3::INFINITY, DVec3::min);
+        let high = all().fold(DVec3::NEG_INFINITY, DVec3::max);
+        // Corners that are not of an element are rounded: places in the frame by 6 u times distances there, twice (see `Line`), what is lifted by 4 u times all coordinates.
+        let coordinate = low.abs().max(high.abs()).max_element();
+        let place = part.iter().fold(0.0, |most: f64, corner| most.max(corner.flat.abs().max_element()));
+        let error = 64.0 * U * (coordinate + place);
+        Self { low: low - error, high: high + error }
+    }
+
+    fn may_meet(&self, [low, high]: [DVec3; 2]) -> bool {
+        self.low.cmple(high).all() && self.high.cmpge(low).all()
+    }
+}
+
 /// Finds what is between an element and those of a facet.
 pub(super) struct Blockers<'a> {
     pub(super) facets: &'a Facets,
     pub(super) elements: &'a Elements,
     pub(super) trees: &'a [ElementTree],
+}
+
+/// The facets that have lately hidden a whole facet from an element: what is next to that one is often behind the same.
+#[derive(Default)]
+pub(super) struct Hiders(Vec<u32>);
+
+impl Hiders {
+    /// So many are kept.
+    const MOST: usize = 8;
+
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Puts one first.
+    fn note(&mut self, facet: u32) {
+        let place = self.0.iter().position(|&known| known == facet).unwrap_or_else(|| {
+            self.0.truncate(Self::MOST - 1);
+            self.0.push(facet);
+            self.0.len() - 1
+        });
+        self.0[..=place].rotate_right(1);
+    }
 }
 
 /// A node of the tree, and which of the possible blockers may block the view of it.
@@ -70,6 +117,8 @@ impl Blockers<'_> {
     /// What two elements are found to be, and what may be between, is the same from either of them: it is decided by exact signs for both, those of facets as a
     /// whole, and of shafts between them. What is found of many elements at once is found of each.
     ///
+    /// Nothing depends on the facets that have hidden others, which are asked first, but the time it takes.
+    ///
     /// Calls `found` with the elements of a facet of which the front is seen, and with the facets that may be between if it takes views to tell. Those that are left
     /// out change nothing for the others.
     pub(super) fn classify(
@@ -77,6 +126,7 @@ impl Blockers<'_> {
         around: &Around,
         from: &Element,
         facet: u32,
+        hiders: &mut Hiders,
         is_left_out: impl Fn(u32) -> bool,
         mut found: impl FnMut(u32, Seen, &mut dyn Iterator<Item = u32>),
     ) {
@@ -98,20 +148,37 @@ impl Blockers<'_> {
         let target = &self.facets.all[facet as usize];
         let own_ring = &self.facets.all[around.facet as usize].ring;
         let shaft = Shaft::between(&from.ring, &target.ring);
-        let mut candidates = self.candidates(around, from, facet, &shaft);
         let mut corners = Vec::new();
+        tree.corners(root, frame, &self.elements.all, &mut corners);
+        let is_alone = tree.halves(root).is_none();
+        let hides_all = |&hider: &u32| {
+            let blocker = self.blocker(around, from, facet, hider).filter(|_| self.may_hide(around, facet, hider));
+            blocker.is_some_and(|mut blocker| blocker.blocks(&corners, is_alone) == Blocks::Everything)
+                && !shaft.excludes(&self.facets.all[hider as usize].ring)
+        };
+        if let Some(hider) = hiders.0.iter().copied().find(hides_all) {
+            hiders.note(hider);
+            return all(root, Seen::Never, &[], &[]);
+        }
+        let mut candidates = self.candidates(around, from, facet, &shaft);
         let mut visits = vec![Visit { node: root, blockers: (0..candidates.len() as u32).collect() }];
         while let Some(Visit { node, mut blockers }) = visits.pop() {
             let is_one = tree.halves(node).is_none();
             let mut is_hidden = false;
             if !blockers.is_empty() {
                 tree.corners(node, frame, &self.elements.all, &mut corners);
+                let reach = Reach::of(&from.ring, &corners);
                 blockers.retain(|&blocker| {
-                    is_hidden || {
-                        let blocks = candidates[blocker as usize].blocks(&corners, is_one);
-                        is_hidden = blocks == Blocks::Everything;
-                        blocks != Blocks::Nothing
-                    }
+                    let blocker = &mut candidates[blocker as usize];
+                    is_hidden
+                        || reach.may_meet(self.facets.all[blocker.facet as usize].bounds) && {
+                            let blocks = blocker.blocks(&corners, is_one);
+                            is_hidden = blocks == Blocks::Everything;
+                            if is_hidden && node == root {
+                                hiders.note(blocker.facet);
+                            }
+                            blocks != Blocks::Nothing
+                        }
                 });
             }
             // The planes of these shafts are for what it is worth: one element. It is all of them, whichever end one looks from.
@@ -157,27 +224,34 @@ impl Blockers<'_> {
 
     /// The facets that may block light between an element and a whole facet, ascending.
     fn candidates<'b>(&'b self, around: &Around, from: &'b Element, facet: u32, shaft: &Shaft) -> Vec<Blocker<'b>> {
-        let frame = &self.elements.frames[facet as usize];
-        // What is behind the facet, or in its plane, hides nothing of it.
-        let may_hide = |&number: &u32| {
-            number != around.facet
-                && number != facet
-                && !matches!(around.facet_lies(self.facets, number), Lies::Behind | Lies::On)
-                && !matches!(self.facets.lies(number, facet), Lies::Behind | Lies::On)
-                && !self.is_redundant(around.facet.min(facet), number)
-        };
+        let may_hide = |&number: &u32| self.may_hide(around, facet, number);
         let blocker = |number: u32| {
-            let blocker = &self.facets.all[number as usize];
-            let own = match around.lies(self.facets, number) {
-                Lies::Across => Lies::of(&from.ring, blocker.spanning),
-                lies => lies,
-            };
-            let lies = self.facets.lies(facet, number);
-            let what = (number, &blocker.ring[..], blocker.spanning);
-            (!own.is_beside(lies) && !shaft.excludes(&blocker.ring))
-                .then(|| Blocker::between(&from.ring, [own, lies], frame, what))
+            self.blocker(around, from, facet, number)
+                .filter(|_| !shaft.excludes(&self.facets.all[number as usize].ring))
         };
         self.within(may_hide, |low, high| shaft.may_meet(low, high)).into_iter().filter_map(blocker).collect()
+    }
+
+    /// False if a facet hides nothing of another one for what it is: what is behind that, or in its plane.
+    fn may_hide(&self, around: &Around, facet: u32, number: u32) -> bool {
+        number != around.facet
+            && number != facet
+            && !matches!(around.facet_lies(self.facets, number), Lies::Behind | Lies::On)
+            && !matches!(self.facets.lies(number, facet), Lies::Behind | Lies::On)
+            && !self.is_redundant(around.facet.min(facet), number)
+    }
+
+    /// A facet as a blocker of light between an element and another facet, unless these are on one side of its plane.
+    fn blocker<'b>(&'b self, around: &Around, from: &'b Element, facet: u32, number: u32) -> Option<Blocker<'b>> {
+        let blocker = &self.facets.all[number as usize];
+        let own = match around.lies(self.facets, number) {
+            Lies::Across => Lies::of(&from.ring, blocker.spanning),
+            lies => lies,
+        };
+        let lies = self.facets.lies(facet, number);
+        let frame = &self.elements.frames[facet as usize];
+        let what = (number, &blocker.ring[..], blocker.spanning);
+        (!own.is_beside(lies)).then(|| Blocker::between(&from.ring, [own, lies], frame, what))
     }
 
     /// The facets of those wanted in boxes that may meet something, ascending.

@@ -1,6 +1,6 @@
 //! What an element exchanges with those that it sees wholly, or partly with all known that is between.
 
-use super::blockers::{Blockers, Seen};
+use super::blockers::{Blockers, Hiders, Seen};
 use super::element::Element;
 use super::element_row::{Effort, ElementRows, from_one};
 use super::partly::{Partly, PartlySpace};
@@ -80,6 +80,7 @@ impl ElementRows<'_> {
                 around,
                 from,
                 to.facet,
+                &mut Hiders::default(),
                 |element| element != other,
                 |_, seen, between| {
                     found = Some((seen, between.collect::<Vec<u32>>()));

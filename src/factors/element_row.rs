@@ -198,11 +198,12 @@ impl ElementRows<'_> {
     fn classify(&self, number: u32, tolerance: f64, space: &mut RowSpace) {
         let elements = self.blockers.elements;
         let from = &elements.all[number as usize];
+        space.hiders.clear();
         for facet in self.in_front(space) {
-            let RowSpace { around: Some(around), found, .. } = &mut *space else { return };
+            let RowSpace { around: Some(around), found, hiders, .. } = &mut *space else { return };
             let Found { seen: how, known, between: places, facets, is_told } = found;
             let is_told = |element: u32| is_told[element as usize];
-            self.blockers.classify(around, from, facet, is_told, |element, seen, between| {
+            self.blockers.classify(around, from, facet, hiders, is_told, |element, seen, between| {
                 let first = facets.len() as u32;
                 facets.extend(between);
                 places[element as usize] = first..facets.len() as u32;

@@ -32,6 +32,7 @@ mod placement;
 mod points;
 mod received;
 mod reciprocity;
+mod rings;
 mod row;
 mod row_space;
 mod rows_once;

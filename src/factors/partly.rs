@@ -2,7 +2,7 @@
 //!
 //! It is divided into quadrilaterals, the worst of which are halved or quartered until the estimates of their errors sum to no more than what is allowed. A shadow that
 //! covers a corner or a side of the element only may be seen by none of the first points. It is seen from the other element's corners and the middles of its sides, as light goes both ways: if, of what they see
-//! of the element, sides of blockers are bounds that are none from any of the points, estimates are raised.
+//! of the element, sides of blockers are bounds that are none from any of the points, estimates are raised, until they are bounds from more points.
 
 use super::bodies::FacetSide;
 use super::cubature::{Outer, Rule, Sample, halves};
@@ -23,6 +23,8 @@ const SMALL: f64 = 8.0;
 const OF_FEW: f64 = 0.1;
 /// The part of it which a shadow is taken to cover that none of many points has seen.
 const OF_MANY: f64 = 0.015;
+/// How many times its estimate an element is taken to be wrong by that is not divided: there is nothing else to tell by.
+const OF_WHOLE: f64 = 3.0;
 /// The part of their estimates that parts of divided elements are wrong by; chosen by dense cities, too: in rows of them estimates were ten times too large, in the middle, without.
 const OF_PARTS: f64 = 0.7;
 /// Errors have both signs: their sum is taken to be so many times the root of the sum of their squares, and no less than this part of the sum of their sizes, as parts along a
@@ -71,21 +73,32 @@ impl Partly<'_> {
         let eyes = self.from.ring.iter().copied().chain([self.from.centre]);
         let at_most = eyes.map(|eye| target.whole_factor(eye, there)).fold(0.0, f64::max);
         if at_most <= SMALL * allowed {
-            let mut quads = self.sample(few, &target, there);
+            let mut quads = self.sample(few, 1.0, &target, there);
             quads.worsen(OF_FEW * at_most);
             if quads.error() <= allowed {
                 return quads.total(at_most);
             }
         }
         there.bounds = Some(Vec::new());
-        let mut quads = self.sample(many, &target, there);
+        let mut quads = self.sample(many, OF_WHOLE, &target, there);
         let known = there.bounds.take().unwrap_or_default();
         // What is below that is not worth a look.
-        if OF_MANY * at_most + quads.error() > allowed && self.look_back(known, back) {
+        let is_worth = OF_MANY * at_most + quads.error() > allowed;
+        let mut missed = if is_worth { self.missed(&known, back) } else { Vec::new() };
+        if !missed.is_empty() {
             quads.worsen(OF_MANY * at_most);
+            there.bounds = Some(known);
         }
         let mut points = quads.count * many.count();
         while quads.error() > allowed && points < most {
+            if let Some(known) = &there.bounds {
+                missed.retain(|side| known.binary_search(side).is_err());
+                if missed.is_empty() {
+                    quads.trust();
+                    there.bounds = None;
+                    continue;
+                }
+            }
             let is_far = quads.error() > FAR * allowed;
             let Some(worst) = quads.pop() else { break };
             let mut parts = worst.part.halves(worst.sample.halve_first).to_vec();
@@ -101,30 +114,32 @@ impl Partly<'_> {
                 quads.add(part, Sample { error: OF_PARTS * sample.error, ..sample }, missed);
             }
         }
+        there.bounds = None;
         quads.total(at_most)
     }
 
-    /// All of the element.
-    fn sample(&self, rule: &Rule, target: &Target<'_>, space: &mut HiddenSpace) -> Quads {
+    /// All of the element, wrong by so many times its estimate.
+    fn sample(&self, rule: &Rule, times: f64, target: &Target<'_>, space: &mut HiddenSpace) -> Quads {
         let mut all = Quads::default();
         for ring in self.parts {
             for quad in quads(ring.len()) {
                 let part = Part { corners: quad.map(|k| ring[k]), outer: Outer::ALL };
                 let sample = rule.sample(part.corners, part.outer, self.from.area, |point| target.factor(point, space));
-                all.add(part, sample, 0.0);
+                all.add(part, Sample { error: times * sample.error, ..sample }, 0.0);
             }
         }
         all
     }
 
-    /// True if, of what corners of the other element and middles of its sides see of this one, sides are bounds that are not known.
-    fn look_back(&self, known: Vec<FacetSide>, space: &mut HiddenSpace) -> bool {
+    /// The sides that are bounds of what corners of the other element and middles of its sides see of this one, and are not known.
+    fn missed(&self, known: &[FacetSide], space: &mut HiddenSpace) -> Vec<FacetSide> {
         let own = Target::new(self.facets, self.elements, [self.to, self.from], self.between, space);
-        let count = known.len();
-        space.bounds = Some(known);
+        space.bounds = Some(Vec::new());
         let middles = sides(&self.to.ring).map(|[a, b]| a.midpoint(b));
         self.to.ring.iter().copied().chain(middles).for_each(|eye| own.note_bounds(eye, space));
-        space.bounds.take().is_some_and(|bounds| bounds.len() > count)
+        let mut bounds = space.bounds.take().unwrap_or_default();
+        bounds.retain(|side| known.binary_search(side).is_err());
+        bounds
     }
 }
 
@@ -215,6 +230,13 @@ impl Quads {
         let part = error / self.waiting.len() as f64;
         let all = std::mem::take(&mut self.waiting).into_iter();
         self.waiting = all.map(|quad| Quad { missed: quad.missed + part, ..quad }).collect();
+    }
+
+    /// Takes back what was added, as nothing has been missed.
+    fn trust(&mut self) {
+        self.missed = 0.0;
+        let all = std::mem::take(&mut self.waiting).into_iter();
+        self.waiting = all.map(|quad| Quad { missed: 0.0, ..quad }).collect();
     }
 
     /// An estimate of the error of the sum.

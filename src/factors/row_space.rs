@@ -1,6 +1,6 @@
 //! What is known of a row while it is computed.
 
-use super::blockers::{Around, Seen};
+use super::blockers::{Around, Hiders, Seen};
 use super::cubature::Scratch;
 use super::element::Elements;
 use super::partly::PartlySpace;
@@ -19,6 +19,7 @@ pub(super) struct RowSpace {
     /// The element in parts within which what is seen changes steadily.
     pub(super) parts: Vec<Vec<DVec3>>,
     pub(super) found: Found,
+    pub(super) hiders: Hiders,
     /// Those of which this row need not find out anything more: whose rows have told it, and which it is face to face with.
     pub(super) complete: Vec<u32>,
     /// What others may be told by this row.
@@ -56,6 +57,7 @@ impl RowSpace {
             around: None,
             parts: Vec::new(),
             found,
+            hiders: Hiders::default(),
             complete: Vec::new(),
             told: Vec::new(),
             shares: vec![Share::default(); columns],

@@ -1,6 +1,6 @@
 //! What casts shadows on an element: facets, and bodies of facets, as they are seen from another element.
 
-use super::bodies::{Body, FacetSide};
+use super::bodies::{Body, FacetSide, MOST_FACETS};
 use super::contacts::TOUCHES;
 use super::element::{Element, Elements};
 use super::facets::Facets;
@@ -16,8 +16,6 @@ pub(super) struct Screens {
     faces: Vec<Face>,
     edges: Vec<Edge>,
     corners: Vec<DVec3>,
-    /// How high the point is over each face of a screen.
-    heights: Vec<f64>,
 }
 
 /// Something convex that hides what is behind it.
@@ -38,8 +36,17 @@ struct Face {
     facet: u32,
 }
 
-/// What is no face that may be seen.
-const NEVER: u32 = u32::MAX;
+impl Face {
+    /// How high a point is over its plane.
+    #[inline]
+    fn height(&self, at: DVec3) -> f64 {
+        self.normal.dot(at) + self.offset
+    }
+}
+
+/// What is no face that may be seen: a number that no face of a body has.
+const NEVER: u32 = 63;
+const _: () = assert!(MOST_FACETS <= NEVER as usize);
 
 struct Edge {
     /// Places of corners, as they follow each other around the face to the left of it.
@@ -69,11 +76,26 @@ impl HalfPlane {
         self.along.dot(p) + self.offset
     }
 
+    /// True if none of some points is inside.
+    #[inline]
+    pub(super) fn has_outside(&self, points: &[DVec2]) -> bool {
+        points.iter().all(|&p| self.height(p) <= 0.0)
+    }
+
     /// True if a side of a ring is on its boundary, up to rounding.
     pub(super) fn bounds(&self, ring: &[DVec2]) -> bool {
-        let length = self.along.length();
-        let is_on = |p: DVec2| self.height(p).abs() <= 1e-9 * (length * p.abs().max_element()).max(self.offset.abs());
+        let is_on = |p: DVec2| self.height(p).abs() <= self.rounding(p);
         sides(ring).any(|[a, b]| is_on(a) && is_on(b))
+    }
+
+    /// True if a corner of a ring is outside by more than rounding.
+    pub(super) fn reaches_beyond(&self, ring: &[DVec2]) -> bool {
+        ring.iter().any(|&p| self.height(p) < -self.rounding(p))
+    }
+
+    /// What a height may be off by. It decides nothing of what is seen, only where one looks for more.
+    fn rounding(&self, p: DVec2) -> f64 {
+        1e-9 * (self.along.length() * p.abs().max_element()).max(self.offset.abs())
     }
 }
 
@@ -125,7 +147,7 @@ impl Screens {
         let frame = &elements.frames[to.facet as usize];
         let [faces, edges] = [self.faces.len() as u32, self.edges.len() as u32];
         let first = self.corners.len() as u32;
-        let mut numbers = [(NEVER, Lies::Behind); super::bodies::MOST_FACETS];
+        let mut numbers = [(NEVER, Lies::Behind); MOST_FACETS];
         for (number, &facet) in numbers.iter_mut().zip(&body.facets) {
             let own = facets.lies_of(from, facet);
             if matches!(own, Lies::Behind | Lies::On) {
@@ -158,60 +180,94 @@ impl Screens {
         self.faces.push(Face { normal, offset, cuts, facet });
     }
 
-    /// Finds the half planes that a screen's shadow is in, seen from a point; false if one of them has all parts outside. That one is tried first the next time.
+    /// Finds the half planes that a screen's shadow is in, seen from a point, relative to whose foot they are; false if one of them has all these corners of what
+    /// is left outside. That one is tried first the next time.
     pub(super) fn shadow(
-        &mut self,
+        &self,
         number: u32,
         at: DVec3,
         tried: &mut u32,
-        parts: &[Vec<DVec2>],
+        left: &[DVec2],
         lines: &mut Vec<(HalfPlane, FacetSide)>,
     ) -> bool {
-        let Self { all, faces, edges, corners, heights } = self;
-        let screen = &all[number as usize];
-        let faces = &faces[screen.faces.start as usize..screen.faces.end as usize];
-        let edges = &edges[screen.edges.start as usize..screen.edges.end as usize];
-        heights.clear();
-        heights.extend(faces.iter().map(|face| face.normal.dot(at) + face.offset));
-        let heights = &heights[..];
-        // From a point in its plane it hides nothing.
-        if screen.is_flat && heights[0].abs() <= 0.0 {
+        let Screen { faces, edges, is_flat } = &self.all[number as usize];
+        let faces = &self.faces[faces.start as usize..faces.end as usize];
+        let edges = &self.edges[edges.start as usize..edges.end as usize];
+        let view = View { is_flat: *is_flat, faces, corners: &self.corners, at };
+        let last = *tried as usize;
+        let last = match faces.get(last) {
+            Some(face) => view.plane(face),
+            None => {
+                let edge = &edges[last - faces.len()];
+                view.outline(edge, [edge.left, edge.right].map(|face| view.is_in_front(face)))
+            }
+        };
+        if last.is_some_and(|line| line.has_outside(left)) {
             return false;
         }
-        let is_in_front = |face: u32| heights.get(face as usize).is_some_and(|&height| height > 0.0);
-        let plane = |k: usize| {
-            let face = &faces[k];
-            let sign = if heights[k] > 0.0 { -1.0 } else { 1.0 };
-            let is_seen = face.cuts && (screen.is_flat || heights[k] > 0.0);
-            is_seen.then(|| HalfPlane { along: sign * face.normal.truncate(), offset: sign * face.offset })
-        };
-        let outline = |edge: &Edge| {
-            let left = is_in_front(edge.left);
-            if !screen.is_flat && left == is_in_front(edge.right) {
-                return None;
-            }
-            let [a, b] = edge.ends.map(|end| corners[end as usize] - at);
-            let inside = if left { b.cross(a) } else { a.cross(b) };
-            Some(HalfPlane { along: inside.truncate(), offset: -inside.dot(at) })
-        };
-        let is_outside = |line: &HalfPlane| parts.iter().all(|part| part.iter().all(|&p| line.height(p) <= 0.0));
-        let last = *tried as usize;
-        let last = if last < faces.len() { plane(last) } else { outline(&edges[last - faces.len()]) };
-        if last.is_some_and(|line| is_outside(&line)) {
+        // A bit for each face.
+        let in_front =
+            (0..faces.len() as u32).fold(0_u64, |bits, face| bits | u64::from(view.is_in_front(face)) << face);
+        // From a point in its plane something flat hides nothing, nor does a body from inside.
+        let hides_nothing = if *is_flat { faces[0].height(at).abs() <= 0.0 } else { in_front == 0 };
+        if hides_nothing {
             return false;
         }
         lines.clear();
-        let planes = (0..faces.len()).map(|k| (plane(k), (faces[k].facet, 0)));
-        let sides = edges.iter().map(|edge| (outline(edge), edge.side));
+        let planes = faces.iter().map(|face| (view.plane(face), (face.facet, 0)));
+        let sides = edges.iter().map(|edge| {
+            let beside = [edge.left, edge.right].map(|face| in_front >> face & 1 == 1);
+            (view.outline(edge, beside), edge.side)
+        });
         for (place, (line, side)) in planes.chain(sides).enumerate() {
             let Some(line) = line else { continue };
-            if is_outside(&line) {
+            if line.has_outside(left) {
                 *tried = place as u32;
                 return false;
             }
             lines.push((line, side));
         }
-        screen.is_flat || heights.iter().any(|&height| height > 0.0)
+        true
+    }
+}
+
+/// A screen, seen from a point.
+struct View<'a> {
+    is_flat: bool,
+    faces: &'a [Face],
+    /// Of all screens.
+    corners: &'a [DVec3],
+    at: DVec3,
+}
+
+impl View<'_> {
+    #[inline]
+    fn is_in_front(&self, face: u32) -> bool {
+        self.faces.get(face as usize).is_some_and(|face| face.height(self.at) > 0.0)
+    }
+
+    /// What is behind the plane of a face, if that is seen and it matters.
+    #[inline]
+    fn plane(&self, face: &Face) -> Option<HalfPlane> {
+        if !face.cuts {
+            return None;
+        }
+        let height = face.height(self.at);
+        let sign = if height > 0.0 { -1.0 } else { 1.0 };
+        let offset = height - face.normal.z * self.at.z;
+        (self.is_flat || height > 0.0)
+            .then(|| HalfPlane { along: sign * face.normal.truncate(), offset: sign * offset })
+    }
+
+    /// What is inside of an edge, if it is part of the outline: the point is in front of one of the faces beside it.
+    #[inline]
+    fn outline(&self, edge: &Edge, [left, right]: [bool; 2]) -> Option<HalfPlane> {
+        if !self.is_flat && left == right {
+            return None;
+        }
+        let [a, b] = edge.ends.map(|end| self.corners[end as usize] - self.at);
+        let inside = if left { b.cross(a) } else { a.cross(b) };
+        Some(HalfPlane { along: inside.truncate(), offset: -inside.z * self.at.z })
     }
 }
 

@@ -32,12 +32,17 @@ impl Receiver {
     ///
     /// The corners count as exact: the error is below 2e-16 times (the value + the polygon's perimeter times its diameter).
     pub(crate) fn factor(ring: &[DVec3]) -> f64 {
-        // Most cells are small.
-        let (mut double, all) = double_flux(ring, series::<6>);
+        let first = ring.first_chunk().map_or(0.0, |[a, b]| sine_squared(*b - *a));
+        // Most cells are small. In others the first arc often shows that already.
+        let (mut double, mut all) = (0.0, first);
         if all < SHORT {
+            (double, all) = double_flux(ring, series::<6>);
+        }
+        if all >= SHORT && all < LONG {
+            (double, all) = double_flux(ring, series::<12>);
+        }
+        if all < LONG {
             // No arc is longer.
-        } else if all < LONG {
-            double = double_flux(ring, series::<12>).0;
         } else if ring.windows(2).all(|arc| sine_squared(arc[1] - arc[0]) < 0.49) {
             double = double_flux(ring, |h| if h < LONG { series::<12>(h) } else { quotient(h) }).0;
         } else {
