@@ -194,7 +194,7 @@ impl Exchange {
         Err(ExchangeError::NotClosed { patch, residue, estimates })
     }
 
-    fn element_rows<'a>(&'a self, shared: &'a Shared) -> ElementRows<'a> {
+    pub(super) fn element_rows<'a>(&'a self, shared: &'a Shared) -> ElementRows<'a> {
         let Self { facets, elements, trees, touching, options, .. } = self;
         let blockers = Blockers { facets, elements, trees };
         let looker = Looker { facets, elements, trees, sides: options.sides };

@@ -1,7 +1,9 @@
 //! All rows by a few exact views from each patch, for pictures: much cheaper than [`Exchange::row`], with errors that nothing bounds.
 
 use super::element::{Element, quads};
-use super::seen::{Columns, LookSpace, Looker};
+use super::seen::{Columns, LookSpace};
+use super::shared::Shared;
+use super::touching::Touch;
 use super::{Exchange, ExchangeError, Sides};
 use crate::parallel;
 use glam::DVec3;
@@ -115,8 +117,9 @@ impl Exchange {
     }
 
     fn seen_from(&self, patch: usize, spacing: f64, space: &mut Space) -> Result<Seen, ExchangeError> {
-        let Self { facets, elements, trees, options, .. } = self;
-        let looker = Looker { facets, elements, trees, sides: options.sides };
+        let elements = &self.elements;
+        let alone = Shared::default();
+        let rows = self.element_rows(&alone);
         let columns = Columns { patches: elements.patches.len() as u32 };
         let Space { look, sums, used } = space;
         sums.resize(columns.count(), 0.0);
@@ -128,7 +131,7 @@ impl Exchange {
             seen.views += stations.len();
             for (point, weight) in stations {
                 whole += weight;
-                looker.look(
+                rows.looker.look(
                     look,
                     element.facet,
                     point,
@@ -143,6 +146,16 @@ impl Exchange {
                 )?;
             }
         }
+        // Views see the backs of what the patch is face to face with.
+        let mut shut = 0.0;
+        for &element in &elements.of_patch[patch] {
+            for Touch { other, exchange, .. } in rows.touching(element, look)? {
+                let column = elements.all[other as usize].patch;
+                used.push(column);
+                sums[column as usize] += exchange.factor;
+                shut += exchange.factor;
+            }
+        }
         used.sort_unstable();
         used.dedup();
         for column in used.drain(..) {
@@ -153,6 +166,7 @@ impl Exchange {
                 seen.entries.push((column, factor));
             }
         }
+        seen.lost = (seen.lost - shut / whole).max(0.0);
         Ok(seen)
     }
 
