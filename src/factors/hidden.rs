@@ -257,7 +257,7 @@ mod tests {
             let points = (0..32 * 32).map(|k| DVec3::new(cell(k % 32), cell(k / 32), 0.0));
             let hidden = points.filter(|&p| meets_box(p, eye)).count();
             space.bounds = Some(Vec::new());
-            target.note_bounds(eye, &mut space);
+            target.note_bounds(facets.placement.local(eye), &mut space);
             let bounds = space.bounds.take().unwrap();
             if hidden > 0 {
                 hides += 1;
