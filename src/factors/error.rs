@@ -66,7 +66,7 @@ pub enum ExchangeError {
     },
     /// What a row lacks is more than the estimates of its errors.
     #[error(
-        "row {patch} sums to 1 only up to {residue:e}, and estimates of its errors explain {estimates:e}; ask for a smaller tolerance"
+        "row {patch} sums to 1 only up to {residue:e}, and estimates of its errors explain {estimates:e}; ask for a smaller tolerance, or for smaller patches (`--patch SIZE`, a mesh)"
     )]
     NotClosed {
         /// The row.

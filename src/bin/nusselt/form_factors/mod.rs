@@ -164,7 +164,8 @@ impl FormFactors {
             let (above, checked, tolerance) = (check.pairs_above_tolerance, check.checked, number(self.tolerance));
             common.warn(&format!(
                 "{above} of {checked} pairs, computed once more from their other patch, differ by more than the tolerance \
-                 {tolerance}; take a smaller one to have that accuracy"
+                 {tolerance}; {}",
+                tally::advice(self.tolerance)
             ));
         }
         Ok(Some(check))

@@ -115,10 +115,23 @@ impl<'p> Tally<'p> {
             let tolerance = number(self.tolerance);
             common.warn(&format!(
                 "of {above} pairs of patches, such as {i} and {j}, reciprocity shows that a factor is off by more than \
-                 the tolerance {tolerance}; take a smaller one to have that accuracy (where polygons lie on each other, of which \
-                 nusselt info tells, only one of them is seen, and no tolerance helps)"
+                 the tolerance {tolerance}; {} (where polygons lie on each other, of which \
+                 nusselt info tells, only one of them is seen, and no tolerance helps)",
+                advice(self.tolerance)
             ));
         }
+    }
+}
+
+/// Integrals that take many points are seldom better than this.
+const REACHED: f64 = 1e-8;
+
+/// What to do if a tolerance was not kept.
+pub(super) fn advice(tolerance: f64) -> &'static str {
+    if tolerance > REACHED {
+        "take a smaller one to have that accuracy"
+    } else {
+        "below 1e-8 what is integrated is as good as its estimates say, and smaller patches help"
     }
 }
 

@@ -135,6 +135,8 @@ impl PointFactorsOf {
     fn print_all(&self, work: &Work<'_>, scene: &Scene) -> Result<(), Unwritten> {
         let out = BufWriter::with_capacity(1 << 16, io::stdout());
         let mut writer = PointFactorsWriter::new(out, PointFactorsFormat::Csv, scene, self.by)?;
+        // Who reads the header before asking for a point would wait for it.
+        writer.flush()?;
         work.run(|points, factors| {
             write(&mut writer, points, factors)?;
             // Who asked may wait for them.
