@@ -195,12 +195,11 @@ impl Screens {
         let edges = &self.edges[edges.start as usize..edges.end as usize];
         let view = View { is_flat: *is_flat, faces, corners: &self.corners, at };
         let last = *tried as usize;
-        let last = match faces.get(last) {
-            Some(face) => view.plane(face),
-            None => {
-                let edge = &edges[last - faces.len()];
-                view.outline(edge, [edge.left, edge.right].map(|face| view.is_in_front(face)))
-            }
+        let last = if let Some(face) = faces.get(last) {
+            view.plane(face)
+        } else {
+            let edge = &edges[last - faces.len()];
+            view.outline(edge, [edge.left, edge.right].map(|face| view.is_in_front(face)))
         };
         if last.is_some_and(|line| line.has_outside(left)) {
             return false;

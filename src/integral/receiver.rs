@@ -38,7 +38,7 @@ impl Receiver {
         if all < SHORT {
             (double, all) = double_flux(ring, series::<6>);
         }
-        if all >= SHORT && all < LONG {
+        if (SHORT..LONG).contains(&all) {
             (double, all) = double_flux(ring, series::<12>);
         }
         if all < LONG {
