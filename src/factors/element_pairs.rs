@@ -54,9 +54,6 @@ impl ElementRows<'_> {
         let its_parts = if is_own { Vec::new() } else { self.blockers.parts(its) };
         let parts = if is_own { &space.parts } else { &its_parts };
         let share = self.partly(from, parts, to, between, effort.allowed(), &mut space.hidden);
-        if is_own {
-            space.cuts.append(&mut space.hidden.cuts);
-        }
         let exchange = Share { factor: from.area * share.factor.max(0.0), error: from.area * share.error };
         space.told.push((other, Told::Exchange(exchange)));
         space.found.seen[other as usize] = Seen::Integrated;
@@ -135,7 +132,7 @@ impl ElementRows<'_> {
     fn integrate(&self, number: u32, column: u32, allowed: f64, space: &mut RowSpace) {
         let elements = self.blockers.elements;
         let from = &elements.all[number as usize];
-        let RowSpace { hidden, found, parts, cuts, .. } = &mut *space;
+        let RowSpace { hidden, found, parts, .. } = &mut *space;
         let partly: Vec<u32> = elements.of_patch[column as usize]
             .iter()
             .copied()
@@ -148,7 +145,6 @@ impl ElementRows<'_> {
             let Range { start, end } = found.between[element as usize];
             let between = &found.facets[start as usize..end as usize];
             let share = self.partly(from, parts, to, between, allowed / count as f64, hidden);
-            cuts.append(&mut hidden.cuts);
             found.seen[element as usize] = Seen::Integrated;
             sum.factor += share.factor.max(0.0);
             sum.error += share.error;

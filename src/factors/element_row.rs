@@ -4,7 +4,6 @@ use super::blockers::{Around, Blockers, Seen};
 use super::contacts::take_out;
 use super::cubature::{Add, Cubature, Division};
 use super::element::Element;
-use super::pieces::pieces;
 use super::row::Share;
 use super::row_space::{Found, RowSpace};
 use super::seen::Looker;
@@ -90,11 +89,6 @@ impl ElementRows<'_> {
         if is_covered || is_complete(space, tolerance) {
             return Ok(());
         }
-        // Few views miss what is seen through slits that integrals have found. What others have told does not say where these are: rows are the same whoever has told what.
-        if !effort.is_shared && !space.cuts.is_empty() {
-            self.cut_parts(from, space);
-            division = Division::None;
-        }
         // What is left: backs, the background, and what too much may be in front of.
         loop {
             let mut means = self.cubature(from, allowed, space).fixed(division)?;
@@ -107,7 +101,6 @@ impl ElementRows<'_> {
             let next = match division {
                 Division::None => Some(Division::Alike(0)),
                 Division::Alike(halvings) if halvings < MOST_HALVINGS => Some(Division::Alike(halvings + 1)),
-                Division::Alike(_) if effort.towards_sides => Some(Division::TowardsSides),
                 Division::Alike(_) | Division::TowardsSides => None,
             };
             let is_off = (sum - 1.0).abs() > error.max(explained(tolerance));
@@ -127,14 +120,6 @@ impl ElementRows<'_> {
             space.around = Some(Around::of(from.facet, self.blockers.facets));
         }
         space.parts = self.blockers.parts(from);
-        space.cuts.clear();
-    }
-
-    /// Cuts the parts of an element where it was cut for what it sees partly.
-    fn cut_parts(&self, from: &Element, space: &mut RowSpace) {
-        let frame = &self.blockers.elements.frames[from.facet as usize];
-        let cuts = std::mem::take(&mut space.cuts);
-        space.parts = space.parts.iter().flat_map(|part| pieces(part, &cuts, frame, from.radius)).collect();
     }
 
     /// Takes what complete rows have told this one.

@@ -28,7 +28,6 @@ mod outlines;
 mod pair;
 mod partly;
 mod patch_mesh;
-mod pieces;
 mod placement;
 mod points;
 mod received;

@@ -2,18 +2,16 @@
 //!
 //! It is divided into quadrilaterals, the worst of which are halved or quartered until the estimates of their errors sum to no more than what is allowed. A shadow that
 //! covers a corner or a side of the element only may be seen by none of the first points. It is seen from the other element's corners and the middles of its sides, as light goes both ways: if, of what they see
-//! of the element, sides of blockers are bounds that are none from any of the points, the element is cut where their shadows end, so that there are points on both sides of them, however narrow
-//! what is lit or hidden may be.
+//! of the element, sides of blockers are bounds that are none from any of the points, estimates are raised, until they are bounds from more points.
 
 use super::bodies::FacetSide;
 use super::cubature::{Outer, Rule, Sample, halves};
 use super::element::{Element, Elements, quads};
 use super::facets::Facets;
-use super::hidden::{Bound, HiddenSpace, Target};
-use super::pieces::pieces;
+use super::hidden::{HiddenSpace, Target};
 use super::row::Share;
-use super::shape::{double_area, sides};
-use glam::{DVec2, DVec3};
+use super::shape::sides;
+use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
@@ -37,10 +35,6 @@ const OF_SUM: f64 = 0.4;
 const FAR: f64 = 3.0;
 const OF_ALLOWED: f64 = 0.1;
 const BEGUN: usize = 1000;
-/// Parts are cut along no more bounds at once.
-const AT_ONCE: usize = 16;
-/// What is cut off is narrow if it is less than this part of the element; if what may arrive there is more than this part of what is allowed, it is cut along all bounds.
-const NARROW: f64 = 1.0 / 16.0;
 
 /// Two elements with what is between them.
 pub(super) struct Partly<'a> {
@@ -60,14 +54,12 @@ pub(super) struct PartlySpace {
     back: HiddenSpace,
     few: Rule,
     many: Rule,
-    /// Where the element was cut last, in its frame.
-    pub(super) cuts: Vec<[DVec2; 2]>,
 }
 
 impl Default for PartlySpace {
     fn default() -> Self {
         let (there, back) = (HiddenSpace::default(), HiddenSpace::default());
-        Self { there, back, few: Rule::first(), many: Rule::genz_malik(), cuts: Vec::new() }
+        Self { there, back, few: Rule::first(), many: Rule::genz_malik() }
     }
 }
 
@@ -75,8 +67,7 @@ impl Partly<'_> {
     /// The form factor from the element to what it sees of the other, with an estimate of its error that is not above `allowed` if `most` points or so are
     /// enough for that.
     pub(super) fn integrate(&self, allowed: f64, most: usize, space: &mut PartlySpace) -> Share {
-        let PartlySpace { there, back, few, many, cuts } = space;
-        cuts.clear();
+        let PartlySpace { there, back, few, many } = space;
         let target = Target::new(self.facets, self.elements, [self.from, self.to], self.between, there);
         // With nothing between, what is seen changes steadily.
         let eyes = self.from.ring.iter().copied().chain([self.from.centre]);
@@ -90,35 +81,18 @@ impl Partly<'_> {
         }
         there.bounds = Some(Vec::new());
         let mut quads = self.sample(many, OF_WHOLE, &target, there);
-        let mut points = quads.count * many.count();
-        // What is below that is not worth a look, unless nothing at all has been seen of what is between: all may be wrong then.
-        let is_worth = OF_MANY * at_most + quads.error() > allowed || there.bounds.as_ref().is_some_and(Vec::is_empty);
-        let mut missed = if is_worth { self.missed(there, back) } else { Vec::new() };
-        let mut unseen = missed.clone();
-        while !unseen.is_empty() && points < most {
-            let (mut segments, mut rest) = one_of_each(unseen);
-            let (count, least) = self.cut(&mut quads, &segments, many, &target, there);
-            points += many.count() * count;
-            if least < NARROW && NARROW * allowed < least * at_most {
-                // From elsewhere it is seen beside that, and by no points in between.
-                let later = rest.split_off(AT_ONCE.min(rest.len()));
-                let others: Vec<[DVec2; 2]> = rest.iter().map(|bound| bound.segment).collect();
-                points += many.count() * self.cut(&mut quads, &others, many, &target, there).0;
-                segments.extend(others);
-                rest = later;
-            }
-            cuts.extend(segments);
-            unseen = there.not_noted(rest);
-        }
-        missed = there.not_noted(missed);
-        if missed.is_empty() {
-            there.bounds = None;
-        } else {
+        let known = there.bounds.take().unwrap_or_default();
+        // What is below that is not worth a look.
+        let is_worth = OF_MANY * at_most + quads.error() > allowed;
+        let mut missed = if is_worth { self.missed(&known, back) } else { Vec::new() };
+        if !missed.is_empty() {
             quads.worsen(OF_MANY * at_most);
+            there.bounds = Some(known);
         }
+        let mut points = quads.count * many.count();
         while quads.error() > allowed && points < most {
-            if there.bounds.is_some() {
-                missed = there.not_noted(missed);
+            if let Some(known) = &there.bounds {
+                missed.retain(|side| known.binary_search(side).is_err());
                 if missed.is_empty() {
                     quads.trust();
                     there.bounds = None;
@@ -132,12 +106,12 @@ impl Partly<'_> {
             if is_far && (is_begun || worst.sample.is_even) && worst.error() > OF_ALLOWED * allowed {
                 parts = parts.iter().flat_map(|half| half.halves(!worst.sample.halve_first)).collect();
             }
-            // Of what may have been missed they have as much less as they are smaller, and each its part.
-            let each_missed = worst.missed / (parts.len() * parts.len()) as f64;
+            // Of what may have been missed they have as much less as they are smaller, and each its part; in the end a shadow is seen or too small to look for.
+            let missed = if is_begun { worst.missed / (parts.len() * parts.len()) as f64 } else { 0.0 };
             for part in parts {
                 points += many.count();
                 let sample = many.sample(part.corners, part.outer, self.from.area, |point| target.factor(point, there));
-                quads.add(part, Sample { error: OF_PARTS * sample.error, ..sample }, each_missed);
+                quads.add(part, Sample { error: OF_PARTS * sample.error, ..sample }, missed);
             }
         }
         there.bounds = None;
@@ -157,61 +131,16 @@ impl Partly<'_> {
         all
     }
 
-    /// The bounds of what corners of the other element and middles of its sides see of this one, by sides that have not been noted from here.
-    fn missed(&self, there: &HiddenSpace, space: &mut HiddenSpace) -> Vec<Bound> {
+    /// The sides that are bounds of what corners of the other element and middles of its sides see of this one, and are not known.
+    fn missed(&self, known: &[FacetSide], space: &mut HiddenSpace) -> Vec<FacetSide> {
         let own = Target::new(self.facets, self.elements, [self.to, self.from], self.between, space);
         space.bounds = Some(Vec::new());
         let middles = sides(&self.to.ring).map(|[a, b]| a.midpoint(b));
-        let eyes = self.to.ring.iter().copied().chain(middles);
-        there.not_noted(eyes.flat_map(|eye| own.bounds(eye, space)).collect())
+        self.to.ring.iter().copied().chain(middles).for_each(|eye| own.note_bounds(eye, space));
+        let mut bounds = space.bounds.take().unwrap_or_default();
+        bounds.retain(|side| known.binary_search(side).is_err());
+        bounds
     }
-
-    /// Cuts parts along the lines of segments that are in them, and returns how many there are anew, and the area of the least piece, as a part of the element's.
-    fn cut(
-        &self,
-        all: &mut Quads,
-        segments: &[[DVec2; 2]],
-        rule: &Rule,
-        target: &Target<'_>,
-        space: &mut HiddenSpace,
-    ) -> (usize, f64) {
-        let frame = &self.elements.frames[self.from.facet as usize];
-        let (mut count, mut least) = (0, 1.0_f64);
-        for quad in all.take() {
-            let pieces = pieces(&quad.part.corners, segments, frame, self.from.radius);
-            if pieces.len() == 1 {
-                all.put(quad);
-                continue;
-            }
-            for piece in pieces {
-                least = least.min(0.5 * double_area(&piece).length() / self.from.area);
-                for corners in quads(piece.len()) {
-                    let part = Part { corners: corners.map(|k| piece[k]), outer: Outer::ALL };
-                    let sample =
-                        rule.sample(part.corners, part.outer, self.from.area, |point| target.factor(point, space));
-                    all.add(part, Sample { error: OF_PARTS * sample.error, ..sample }, 0.0);
-                    count += 1;
-                }
-            }
-        }
-        (count, least)
-    }
-}
-
-/// Where the first bound by each side is, of the first sides, and the other bounds: a side is mostly known when there are points on both sides of one.
-fn one_of_each(bounds: Vec<Bound>) -> (Vec<[DVec2; 2]>, Vec<Bound>) {
-    let mut taken: Vec<FacetSide> = Vec::new();
-    let mut segments = Vec::new();
-    let mut rest = Vec::new();
-    for bound in bounds {
-        if taken.len() < AT_ONCE && !taken.contains(&bound.side) {
-            taken.push(bound.side);
-            segments.push(bound.segment);
-        } else {
-            rest.push(bound);
-        }
-    }
-    (segments, rest)
 }
 
 /// A part of the element.
@@ -293,21 +222,6 @@ impl Quads {
         self.squares -= worst.sample.error * worst.sample.error;
         self.missed -= worst.missed;
         Some(worst)
-    }
-
-    /// Takes out all, in an order that does not change.
-    fn take(&mut self) -> Vec<Quad> {
-        let Self { waiting, count, .. } = std::mem::take(self);
-        self.count = count;
-        waiting.into_sorted_vec()
-    }
-
-    /// Puts back one that was taken out.
-    fn put(&mut self, Quad { part, sample, missed, number }: Quad) {
-        let count = self.count;
-        self.count = number - 1;
-        self.add(part, sample, missed);
-        self.count = count;
     }
 
     /// Adds to the estimates, by equal parts.

@@ -10,7 +10,6 @@ mod meshes;
 mod reciprocal;
 mod references;
 mod rows;
-mod slits;
 
 use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, Row};
 use nusselt::scene::Scene;
