@@ -104,6 +104,24 @@ proptest! {
     }
 }
 
+// Stretches that are left out, one after the other, do not make two of one; nor is one lost that is half a circle but for rounding.
+#[test]
+fn long_edges_close_by_are_followed_to_their_ends() {
+    let (x, z) = (7.1360142982321815, -5.204935294543438);
+    let long: Vec<[[f64; 3]; 3]> = vec![
+        [[0.0, 0.0, 0.0], [0.0, -22.82023616646453, 6.0], [-7.0, 5.192500453430043, 10_995_116_277_760.0]],
+        [[x, 0.0, z], [x, -5.739492565053065e37, 13.20493529454344], [x, 8.609238847579596e37, z]],
+        [[x, 5.739492565053065e37, z], [x, 0.0, 4.000000000000001], [x, -8.609238847579596e37, 17.80740294181516]],
+    ];
+    for triangle in long {
+        let scene = Scene::builder().mesh(&triangle, &[vec![0, 1, 2]], Material::new("grey")).build();
+        let scene = scene.expect("a scene");
+        for eye in [[-5.0, -1.1798600952808238, 0.0], [6.0, 0.0, 0.0]] {
+            check(&sphere(&scene, eye.into()), false, &mut Random(0)).expect("right");
+        }
+    }
+}
+
 fn boxes(corners: &[[DVec3; 2]]) -> Scene {
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for [low, high] in corners {

@@ -9,6 +9,7 @@ use crate::exact::Sign;
 use crate::scene::{EdgeId, PieceId, PolygonId};
 use glam::DVec3;
 use rustc_hash::FxHashMap;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Stretches shorter than this, in radians, are left out: some hundred times what a direction is rounded by.
 const SHORTEST: f64 = 1e-13;
@@ -114,7 +115,11 @@ impl EdgeTracer<'_> {
         let start = ends[0].unit();
         let across = directions.normal(circle).v.normalize_or_zero() * if same_way { 1.0 } else { -1.0 };
         let ahead = across.cross(start);
-        let angle = |d: &LooseDirection| d.unit().dot(ahead).atan2(d.unit().dot(start));
+        // From 0 to pi; rounded, one near pi may come out as one near -pi.
+        let angle = |d: &LooseDirection| {
+            let angle = d.unit().dot(ahead).atan2(d.unit().dot(start));
+            if angle < -FRAC_PI_2 { angle + TAU } else { angle }
+        };
         // Where something begins to be there, or to be seen, and where it ends.
         let mut events: Vec<(f64, i32, i32)> = Vec::new();
         let mut stack = vec![Step { link: self.image.root(), ends, left: true, right: true }];
@@ -133,16 +138,22 @@ impl EdgeTracer<'_> {
         let direction = |angle: f64| start * angle.cos() + ahead * angle.sin();
         let mut stretches: Vec<([f64; 2], bool)> = Vec::new();
         let (mut there, mut seen) = (0, 0);
+        // It left the domain since the last stretch.
+        let mut interrupted = false;
         for pair in events.windows(2) {
             there += pair[0].1;
             seen += pair[0].2;
             let (from, to) = (pair[0].0, pair[1].0);
-            if there <= 0 || to - from < SHORTEST {
+            if to - from < SHORTEST {
                 continue;
             }
             match stretches.last_mut() {
-                Some((ends, is_visible)) if *is_visible == (seen > 0) && from - ends[1] < SHORTEST => ends[1] = to,
-                _ => stretches.push(([from, to], seen > 0)),
+                _ if there <= 0 => interrupted = true,
+                Some((ends, is_visible)) if *is_visible == (seen > 0) && !interrupted => ends[1] = to,
+                _ => {
+                    stretches.push(([from, to], seen > 0));
+                    interrupted = false;
+                }
             }
         }
         let stretch = |(ends, is_visible): ([f64; 2], bool)| EdgeStretch { ends: ends.map(direction), is_visible };
