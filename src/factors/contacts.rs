@@ -96,7 +96,7 @@ pub(super) fn take_out(parts: &mut Vec<Vec<DVec3>>, frame: &Frame, ring: &[DVec2
 }
 
 /// True if a segment has a length within a convex polygon, and not on its boundary, up to rounding.
-fn crosses(ring: &[DVec2], [p, q]: [DVec2; 2], size: f64) -> bool {
+pub(super) fn crosses(ring: &[DVec2], [p, q]: [DVec2; 2], size: f64) -> bool {
     let (mut from, mut to) = (0.0, 1.0_f64);
     for [a, b] in sides(ring) {
         let reach = 1e-12 * size * a.distance(b);

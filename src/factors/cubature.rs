@@ -308,27 +308,16 @@ impl<L, E> Cubature<'_, L>
 where
     L: FnMut(DVec3, Add<'_>) -> Result<(), E>,
 {
-    /// By a fixed number of points.
-    pub(super) fn fixed(&mut self, division: Division) -> Result<Means, E> {
-        let mut parts = self.quads();
-        let rule = if matches!(division, Division::None) { Rule::first() } else { Rule::genz_malik() };
-        match division {
-            Division::None => {}
-            Division::Alike(halvings) => {
-                for _ in 0..halvings {
-                    for first in [true, false] {
-                        parts = parts.into_iter().flat_map(|part| halves(part, first)).collect();
-                    }
-                }
-            }
-            Division::TowardsSides => parts = parts.into_iter().flat_map(layers).collect(),
-        }
-        let regions = parts.iter().map(|&corners| self.region(corners, &rule)).collect::<Result<Vec<_>, E>>()?;
+    /// By 5 points a quadrilateral.
+    pub(super) fn by_few(&mut self) -> Result<Means, E> {
+        let rule = Rule::first();
+        let quads = self.quads();
+        let regions = quads.iter().map(|&corners| self.region(corners, &rule)).collect::<Result<Vec<_>, E>>()?;
         Ok(Means { parts: self.sum(&regions) })
     }
 
-    /// By as many points as it takes, though not many more than `most`: the estimates tell whether that was enough.
-    pub(super) fn adaptive(&mut self, most: usize) -> Result<Means, E> {
+    /// By as many points as it takes, though not many more than `most` or than the division has: the estimates tell whether that was enough.
+    pub(super) fn adaptive(&mut self, division: Division, most: usize) -> Result<Means, E> {
         let rule = Rule::genz_malik();
         let mut waiting = BinaryHeap::new();
         let mut totals = Totals { allowed: self.allowed, over: 0, touched: Vec::new() };
@@ -341,7 +330,7 @@ where
             Ok::<usize, E>(points)
         };
         let mut spent = 0;
-        for quad in self.quads() {
+        for quad in division.of(self.quads()) {
             spent = take(self, quad, &mut totals, &mut waiting)?;
         }
         while totals.over > 0 && spent < most {
@@ -409,15 +398,23 @@ impl Totals {
     }
 }
 
-/// How a polygon is divided for a fixed number of points.
+/// How a polygon is divided at first, into quadrilaterals of 25 points each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Division {
-    /// Not at all: 5 points a quadrilateral.
-    None,
-    /// Into 4 to this power: 25 points each.
+    /// Into 4 to this power.
     Alike(u32),
     /// Into layers that come closer and closer to the sides, where what is near in contact with others changes most: 10,000 points.
     TowardsSides,
+}
+
+impl Division {
+    fn of(self, quads: Vec<[DVec3; 4]>) -> Vec<[DVec3; 4]> {
+        match self {
+            Self::Alike(halvings) => (0..2 * halvings)
+                .fold(quads, |quads, k| quads.into_iter().flat_map(|quad| halves(quad, k % 2 == 0)).collect()),
+            Self::TowardsSides => quads.into_iter().flat_map(layers).collect(),
+        }
+    }
 }
 
 /// A quadrilateral in layers towards its sides, each half as thick as the one before.

@@ -37,27 +37,35 @@ impl ElementRows<'_> {
     }
 
     /// What is exchanged with an element that is partly seen, as either of the two would find.
-    ///
-    /// It is integrated over the smaller one. The larger one would take fewer points, but a small patch that is seen from a small part of a large one may be
-    /// missed by all of them.
     fn exchange_partly(&self, number: u32, other: u32, effort: Effort, space: &mut RowSpace) {
-        let elements = self.blockers.elements;
-        let [own, its] = [number, other].map(|k| &elements.all[k as usize]);
-        let Range { start, end } = space.found.between[other as usize].clone();
-        let between = &space.found.facets[start as usize..end as usize];
-        if between.len() > MOST_BETWEEN {
+        let Range { start, end } = space.found.between[other as usize];
+        if (end - start) as usize > MOST_BETWEEN {
             space.told.push((other, Told::Unknown));
             return;
         }
-        let is_own = (own.area, number) < (its.area, other);
-        let (from, to) = if is_own { (own, its) } else { (its, own) };
-        let its_parts = if is_own { Vec::new() } else { self.blockers.parts(its) };
-        let parts = if is_own { &space.parts } else { &its_parts };
-        let share = self.partly(from, parts, to, between, effort.allowed(), &mut space.hidden);
-        let exchange = Share { factor: from.area * share.factor.max(0.0), error: from.area * share.error };
+        let exchange = self.over_the_smaller(number, other, effort.allowed(), space);
+        let [own, its] = [number, other].map(|k| &self.blockers.elements.all[k as usize]);
         space.told.push((other, Told::Exchange(exchange)));
-        space.found.seen[other as usize] = Seen::Integrated;
         space.add(its.patch, from_one(exchange, own));
+    }
+
+    /// `A_i` `F_ij` of an element that is partly seen, by points on the smaller one of the two, whose factor may be off by what is allowed. Views leave it out from now on.
+    ///
+    /// The larger one would take fewer points, but a small element that is seen from a small part of a large one may be missed by all of them.
+    fn over_the_smaller(&self, number: u32, other: u32, allowed: f64, space: &mut RowSpace) -> Share {
+        let [own, its] = [number, other].map(|k| &self.blockers.elements.all[k as usize]);
+        let RowSpace { found, parts, hidden, cuts, .. } = space;
+        let Range { start, end } = found.between[other as usize];
+        let between = &found.facets[start as usize..end as usize];
+        found.seen[other as usize] = Seen::Integrated;
+        let (smaller, share) = if (own.area, number) < (its.area, other) {
+            let share = self.partly(own, parts, its, between, allowed, hidden);
+            cuts.append(&mut hidden.cuts);
+            (own, share)
+        } else {
+            (its, self.partly(its, &self.blockers.parts(its), own, between, allowed, hidden))
+        };
+        Share { factor: smaller.area * share.factor.max(0.0), error: smaller.area * share.error }
     }
 
     /// The form factor to another element by points on this one, whatever their sizes and however well it is seen: for a check of what rows have. `None` if views
@@ -128,28 +136,18 @@ impl ElementRows<'_> {
         })
     }
 
-    /// Adds the share of a patch, all that may hide parts of which is known, as far as it is not seen wholly. Views leave it out from now on.
+    /// Adds the share of a patch, all that may hide parts of which is known, as far as it is not seen wholly.
     fn integrate(&self, number: u32, column: u32, allowed: f64, space: &mut RowSpace) {
         let elements = self.blockers.elements;
-        let from = &elements.all[number as usize];
-        let RowSpace { hidden, found, parts, .. } = &mut *space;
-        let partly: Vec<u32> = elements.of_patch[column as usize]
-            .iter()
-            .copied()
-            .filter(|&element| found.seen[element as usize] == Seen::Partly)
-            .collect();
-        let count = partly.len();
+        let is_partly = |element: &&u32| space.found.seen[**element as usize] == Seen::Partly;
+        let partly: Vec<u32> = elements.of_patch[column as usize].iter().filter(is_partly).copied().collect();
         let mut sum = Share::default();
         for &element in &partly {
-            let to = &elements.all[element as usize];
-            let Range { start, end } = found.between[element as usize];
-            let between = &found.facets[start as usize..end as usize];
-            let share = self.partly(from, parts, to, between, allowed / count as f64, hidden);
-            found.seen[element as usize] = Seen::Integrated;
-            sum.factor += share.factor.max(0.0);
-            sum.error += share.error;
+            let exchange = self.over_the_smaller(number, element, allowed / partly.len() as f64, space);
+            sum.factor += exchange.factor;
+            sum.error += exchange.error;
         }
-        space.add(column, sum);
+        space.add(column, from_one(sum, &elements.all[number as usize]));
     }
 
     /// `A_i` `F_ij` of an element that is seen wholly, from wherever its front is.

@@ -4,6 +4,7 @@ use super::blockers::{Around, Blockers, Seen};
 use super::contacts::take_out;
 use super::cubature::{Add, Cubature, Division};
 use super::element::Element;
+use super::pieces::pieces;
 use super::row::Share;
 use super::row_space::{Found, RowSpace};
 use super::seen::Looker;
@@ -69,8 +70,6 @@ impl ElementRows<'_> {
         let tolerance = effort.tolerance;
         let from = &elements.all[number as usize];
         self.stand_on(from, space);
-        let allowed = effort.allowed();
-        let mut division = if effort.towards_sides { Division::TowardsSides } else { Division::None };
         if effort.is_shared {
             self.listen(number, space);
         }
@@ -89,28 +88,31 @@ impl ElementRows<'_> {
         if is_covered || is_complete(space, tolerance) {
             return Ok(());
         }
-        // What is left: backs, the background, and what too much may be in front of.
+        // What is left: backs, the background, and what too much may be in front of. Where few views miss something, more are taken.
+        let mut division = effort.towards_sides.then_some(Division::TowardsSides);
+        if effort.towards_sides && !space.cuts.is_empty() {
+            self.cut_parts(from, space);
+            division = None;
+        }
         loop {
-            let mut means = self.cubature(from, allowed, space).fixed(division)?;
-            if means.parts.iter().any(|part| part.error > allowed) {
-                means = self.cubature(from, allowed, space).adaptive(self.most_views)?;
-            }
+            let means = {
+                let mut cubature = self.cubature(from, effort.allowed(), space);
+                match division {
+                    None => cubature.by_few()?,
+                    Some(division) => cubature.adaptive(division, self.most_views)?,
+                }
+            };
+            let is_rough = division.is_none() && means.parts.iter().any(|part| part.error > effort.allowed());
             let rest = means.parts.iter().map(|part| Share { factor: part.value.max(0.0), error: part.error });
             let known = space.columns.iter().map(|&column| space.shares[column as usize]);
             let (sum, error) = total(known.chain(rest.clone()));
-            let next = match division {
-                Division::None => Some(Division::Alike(0)),
-                Division::Alike(halvings) if halvings < MOST_HALVINGS => Some(Division::Alike(halvings + 1)),
-                Division::Alike(_) | Division::TowardsSides => None,
-            };
             let is_off = (sum - 1.0).abs() > error.max(explained(tolerance));
-            let Some(finer) = next.filter(|_| is_off) else {
+            let Some(finer) = finer(division, effort).filter(|_| is_rough || is_off) else {
                 let columns: Vec<u32> = means.parts.iter().map(|part| part.column).collect();
                 columns.into_iter().zip(rest).for_each(|(column, share)| space.add(column, share));
                 return Ok(());
             };
-            // Few views have missed something.
-            division = finer;
+            division = Some(finer);
         }
     }
 
@@ -120,6 +122,14 @@ impl ElementRows<'_> {
             space.around = Some(Around::of(from.facet, self.blockers.facets));
         }
         space.parts = self.blockers.parts(from);
+        space.cuts.clear();
+    }
+
+    /// Cuts the parts of an element where it was cut for what it sees partly.
+    fn cut_parts(&self, from: &Element, space: &mut RowSpace) {
+        let frame = &self.blockers.elements.frames[from.facet as usize];
+        let cuts = std::mem::take(&mut space.cuts);
+        space.parts = space.parts.iter().flat_map(|part| pieces(part, &cuts, frame, from.radius)).collect();
     }
 
     /// Takes what complete rows have told this one.
@@ -225,6 +235,16 @@ impl ElementRows<'_> {
 /// The share of what leaves an element that an exchange is.
 pub(super) fn from_one(exchange: Share, from: &Element) -> Share {
     Share { factor: exchange.factor / from.area, error: exchange.error / from.area }
+}
+
+/// How an element is divided next, to find what has been missed.
+fn finer(division: Option<Division>, effort: Effort) -> Option<Division> {
+    match division {
+        None => Some(Division::Alike(0)),
+        Some(Division::Alike(halvings)) if halvings < MOST_HALVINGS => Some(Division::Alike(halvings + 1)),
+        Some(Division::Alike(_)) if effort.towards_sides => Some(Division::TowardsSides),
+        Some(_) => None,
+    }
 }
 
 /// True if what has a share is all there is, up to errors and what may be neglected.

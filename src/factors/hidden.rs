@@ -41,6 +41,13 @@ pub(super) struct HiddenSpace {
     pub(super) bounds: Option<Vec<FacetSide>>,
 }
 
+/// Where the shadow of a side ends on an element, in the frame of that.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bound {
+    pub(super) side: FacetSide,
+    pub(super) segment: [DVec2; 2],
+}
+
 /// What is left of a part while it is cut, and what is left after one more line.
 #[derive(Default)]
 struct Cutting {
@@ -53,6 +60,14 @@ struct Cutting {
 struct Tried {
     screen: u32,
     line: u32,
+}
+
+impl HiddenSpace {
+    /// Those of some bounds whose sides have not been noted.
+    pub(super) fn not_noted(&self, mut bounds: Vec<Bound>) -> Vec<Bound> {
+        bounds.retain(|bound| self.bounds.as_ref().is_none_or(|noted| noted.binary_search(&bound.side).is_err()));
+        bounds
+    }
 }
 
 impl<'a> Target<'a> {
@@ -106,12 +121,18 @@ impl<'a> Target<'a> {
         self.receiver.factor_of(part.iter().rev().map(|p| p.extend(-height)), ring)
     }
 
-    /// Notes what bounds what is seen of the element from a point.
-    pub(super) fn note_bounds(&self, point: DVec3, space: &mut HiddenSpace) {
+    /// What bounds what is seen of the element from a point, if bounds are noted; some may come twice.
+    pub(super) fn bounds(&self, point: DVec3, space: &mut HiddenSpace) -> Vec<Bound> {
         let at = self.frame.local(point);
-        if at.z > 0.0 {
-            cut_off_shadows(at, space);
+        if at.z <= 0.0 || !cut_off_shadows(at, space) {
+            return Vec::new();
         }
+        let HiddenSpace { parts, cuts, .. } = space;
+        let of_line = |&(line, side): &(HalfPlane, FacetSide)| {
+            let segments = parts.all().filter_map(move |part| line.bounds(part));
+            segments.map(move |segment| Bound { side, segment: segment.map(|p| p + at.truncate()) })
+        };
+        cuts.iter().flat_map(of_line).collect()
     }
 }
 
@@ -144,7 +165,7 @@ fn cut_off_shadows(at: DVec3, space: &mut HiddenSpace) -> bool {
     if let Some(bounds) = bounds {
         for &(line, side) in &*cuts {
             if let Err(place) = bounds.binary_search(&side)
-                && parts.all().any(|part| line.bounds(part))
+                && parts.all().any(|part| line.bounds(part).is_some())
             {
                 bounds.insert(place, side);
             }
@@ -257,8 +278,10 @@ mod tests {
             let points = (0..32 * 32).map(|k| DVec3::new(cell(k % 32), cell(k / 32), 0.0));
             let hidden = points.filter(|&p| meets_box(p, eye)).count();
             space.bounds = Some(Vec::new());
-            target.note_bounds(facets.placement.local(eye), &mut space);
-            let bounds = space.bounds.take().unwrap();
+            let bounds = target.bounds(facets.placement.local(eye), &mut space);
+            let noted = space.bounds.take().unwrap();
+            assert!(bounds.iter().all(|bound| noted.contains(&bound.side)), "{eye}: {bounds:?} {noted:?}");
+            assert_eq!(noted.is_empty(), bounds.is_empty(), "{eye}: {bounds:?} {noted:?}");
             // What is hidden as a whole has no bounds either.
             if (1..32 * 32).contains(&hidden) {
                 hides += 1;

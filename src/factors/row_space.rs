@@ -7,7 +7,7 @@ use super::partly::PartlySpace;
 use super::row::Share;
 use super::seen::{Columns, LookSpace};
 use super::shared::Told;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::ops::Range;
 
 /// Memory that is used again from row to row.
@@ -18,6 +18,8 @@ pub(super) struct RowSpace {
     pub(super) around: Option<Around>,
     /// The element in parts within which what is seen changes steadily.
     pub(super) parts: Vec<Vec<DVec3>>,
+    /// Where it was cut to find what few points miss, in its frame.
+    pub(super) cuts: Vec<[DVec2; 2]>,
     pub(super) found: Found,
     pub(super) hiders: Hiders,
     /// Those of which this row need not find out anything more: whose rows have told it, and which it is face to face with.
@@ -56,6 +58,7 @@ impl RowSpace {
             hidden: PartlySpace::default(),
             around: None,
             parts: Vec::new(),
+            cuts: Vec::new(),
             found,
             hiders: Hiders::default(),
             complete: Vec::new(),

@@ -82,10 +82,10 @@ impl HalfPlane {
         points.iter().all(|&p| self.height(p) <= 0.0)
     }
 
-    /// True if a side of a ring is on its boundary, up to rounding.
-    pub(super) fn bounds(&self, ring: &[DVec2]) -> bool {
+    /// The side of a ring that is on its boundary, up to rounding.
+    pub(super) fn bounds(&self, ring: &[DVec2]) -> Option<[DVec2; 2]> {
         let is_on = |p: DVec2| self.height(p).abs() <= self.rounding(p);
-        sides(ring).any(|[a, b]| is_on(a) && is_on(b))
+        sides(ring).find(|&[a, b]| is_on(a) && is_on(b))
     }
 
     /// True if a corner of a ring is outside by more than rounding.

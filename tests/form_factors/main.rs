@@ -10,6 +10,7 @@ mod meshes;
 mod reciprocal;
 mod references;
 mod rows;
+mod slits;
 
 use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, Row};
 use nusselt::scene::Scene;

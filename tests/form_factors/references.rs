@@ -93,9 +93,24 @@ fn corners([x0, x1, y0, y1]: Extent, z: f64) -> [DVec3; 4] {
     [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(|[x, y]| DVec3::new(x, y, z))
 }
 
-/// From a rectangle at height 0 to one at height `top`, with one at height `middle` between, all parallel to the axes: the shadow from each point
-/// is a rectangle again, and it comes over the edges of the receiver where the emitter's points are on known lines.
+/// From a rectangle at height 0 to one at height `top`, with one at height `middle` between, all parallel to the axes.
 pub(crate) fn behind_a_plate(from: Extent, blocker: Extent, middle: f64, to: Extent, top: f64) -> f64 {
+    let whole = corners(to, top);
+    over_shadows(from, blocker, middle, to, top, |x, shadow| {
+        (lambert(x, DVec3::Z, &whole) - lambert(x, DVec3::Z, shadow)).abs()
+    })
+}
+
+/// The mean over a rectangle of a function of a point and of the shadow there, of one on another one: the shadow from each point
+/// is a rectangle again, and it comes over the edges of the receiver where the emitter's points are on known lines.
+pub(crate) fn over_shadows(
+    from: Extent,
+    blocker: Extent,
+    middle: f64,
+    to: Extent,
+    top: f64,
+    visible: impl Fn(DVec3, &[DVec3]) -> f64,
+) -> f64 {
     let ratio = top / middle;
     let places = |k: usize| {
         let (low, high) = (from[2 * k], from[2 * k + 1]);
@@ -112,14 +127,12 @@ pub(crate) fn behind_a_plate(from: Extent, blocker: Extent, middle: f64, to: Ext
         fine.push(high);
         fine.iter().map(|p| (p - low) / (high - low)).collect::<Vec<f64>>()
     };
-    let whole = corners(to, top);
     mean(&places(0), &places(1), |u, v| {
         let x = DVec3::new(from[0] + u * (from[1] - from[0]), from[2] + v * (from[3] - from[2]), 0.0);
         let shadow: Extent = std::array::from_fn(|k| {
             let (x, b) = (x[k / 2], blocker[k]);
             (x + (b - x) * ratio).clamp(to[k / 2 * 2], to[k / 2 * 2 + 1])
         });
-        let visible = lambert(x, DVec3::Z, &whole) - lambert(x, DVec3::Z, &corners(shadow, top));
-        visible.abs()
+        visible(x, &corners(shadow, top))
     })
 }
