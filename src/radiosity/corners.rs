@@ -54,7 +54,9 @@ impl Corners {
                         if standing.is_on(ring, ring[k].midpoint(ring[next])) {
                             walls.extend(pairs);
                         } else {
-                            pairs.into_iter().for_each(|pair| shared.unite(pair));
+                            for pair in pairs {
+                                shared.unite(pair);
+                            }
                         }
                     }
                 }

@@ -29,7 +29,9 @@ impl Mixed {
     /// Takes radiances times an exposure, in each part at most white.
     pub(super) fn display(&self, pixels: &mut [DVec3], exposure: f64) {
         let shown = |radiance: DVec3| (radiance * exposure).min(DVec3::ONE);
-        pixels.iter_mut().for_each(|pixel| *pixel = shown(*pixel));
+        for pixel in pixels.iter_mut() {
+            *pixel = shown(*pixel);
+        }
         let mut start = 0;
         for &(pixel, end) in &self.pixels {
             // Areas sum to 1 but for rounding.
