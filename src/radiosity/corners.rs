@@ -170,7 +170,7 @@ mod tests {
     use crate::factors::PatchMesh;
     use crate::scene::Material;
 
-    /// A floor of 4 x 4 with a sheet that stands on it at x = 0 from y = -1 to 1, and a block beside it.
+    /// The corners of a floor of 4.1 x 4.1 on which a sheet stands at x = 0 from y = -1 to 1, with the rings that have them.
     fn corners_at(longest: f64) -> (Vec<Vec<DVec3>>, Corners) {
         let floor = [[-2.1, -2.1, 0.0], [2.0, -2.1, 0.0], [2.0, 2.0, 0.0], [-2.1, 2.0, 0.0]];
         let sheet = [[0.0, -1.0, 0.0], [0.0, 1.0, 0.0], [0.0, 1.0, 1.0], [0.0, -1.0, 1.0]];
