@@ -140,6 +140,7 @@ fn what_is_wrong_is_said_in_one_line() {
         (with("-o x.png -o x.png"), 2, "written twice"),
         (with("-o box.obj"), 2, ".png, .exr"),
         (with("-o none/x.png"), 1, "none does not exist; make its directory first"),
+        (with("-o box.obj/x.png"), 1, "cannot write box.obj/x.png: "),
         (with("--direct --size 3x3 --point-light 278,273,NaN:1 -o x.png"), 2, "--point-light"),
         ("render box.obj --eye 1,2,3 --look-at 1,2,3 --fov 40 -o x.png".to_owned(), 2, "--look-at is --eye"),
         ("render box.obj --eye 1,2,3 -o x.png".to_owned(), 2, "--look-at"),
@@ -151,6 +152,15 @@ fn what_is_wrong_is_said_in_one_line() {
         assert!(error.contains(what), "{line}: {error}");
         assert!(!folder.exists("x.png"), "{line}");
     }
+}
+
+/// Before any work is done: the scene is not even read.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_place_that_takes_no_files_is_named() {
+    let folder = Folder::new("render-nowhere");
+    let error = folder.run(&format!("render none.obj {CAMERA} -o /proc/x.png"), 1);
+    assert!(error.contains("cannot write /proc/x.png: ") && error.contains("choose another directory"), "{error}");
 }
 
 /// What the program says on stderr.

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3, UVec2};
 use nusselt::brdf::{Brdf, Fresnel, Lambert, Light, Lighting, Mirror, Phong, Sky, Sum};
 use nusselt::contour::{Domain, Frustum, SceneOrder, Viewpoint};
 use nusselt::factors::{Exchange, ExchangeOptions, PatchMesh, mesh_scene};
-use nusselt::picture::PixelParts;
+use nusselt::picture::{PixelPart, PixelParts};
 use nusselt::radiosity::SurfaceOptions;
 use nusselt::render::{Indirect, RenderError, Rendered, Shader, ShaderOptions, Shading, Spot, render, render_bands};
 use nusselt::samples::{Kind, generate};
@@ -111,6 +111,41 @@ fn pixels_are_the_radiances_of_what_is_in_them() {
     let exposure = rendered.auto_exposure();
     let brighter = rendered.picture.pixels().iter().filter(|pixel| pixel.x * exposure > 0.8 && pixel.x < GLOW).count();
     assert!(exposure > 1.0 && brighter * 20 < 48 * 32 + 20 * 32, "{exposure} {brighter}");
+}
+
+/// The lamp is far above white, and what is beside it is black or nearly so.
+#[test]
+fn the_outline_of_a_lamp_is_as_smooth_on_a_screen_as_others_are() {
+    let scene = half_hidden();
+    let shader = shader(&scene, Shading::Contour);
+    let eye = DVec3::new(-3.5, 0.5, 1.0);
+    let camera = Frustum::new(DVec3::new(3.5, -0.5, 1.0), DVec3::Z, 60.0, 1.5).expect("a camera");
+    let size = UVec2::new(48, 32);
+    let rendered = render(&shader, eye, &camera, size, &|_| ()).expect("a picture");
+    let image = shader.order().view(&Viewpoint::free(eye), &Domain::Frustum(camera)).expect("a view");
+    let parts = PixelParts::new(&image, size).expect("a size").expect("a camera");
+    let radiance = |part: &PixelPart| match part.polygon {
+        Some(PolygonId(0)) => expected((eye + part.direction * (-eye.z / part.direction.z)).truncate()),
+        Some(PolygonId(1)) => GLOW,
+        _ => 0.0,
+    };
+    for exposure in [0.1, 2.0, 1e3] {
+        let displayed = rendered.displayed(exposure);
+        let (mut outline, mut lamp) = (0, 0.0);
+        parts.tile(UVec2::ZERO, size, |x, y, parts| {
+            let shown: f64 = parts.iter().map(|part| (radiance(part) * exposure).min(1.0) * part.area).sum();
+            // The floor's radiance is right to some 1e-13, and is scaled by the exposure until it is white.
+            let found = displayed.pixel(x, y).x;
+            assert!((found - shown).abs() < 1e-12 * exposure.max(1.0), "{x} {y} {exposure}");
+            assert!((0.0..=1.0).contains(&found));
+            let of_lamp = parts.iter().filter(|part| part.polygon == Some(PolygonId(1))).map(|part| part.area);
+            lamp += of_lamp.sum::<f64>();
+            // What averaging first would make of it.
+            outline += usize::from((rendered.picture.pixel(x, y).x * exposure).min(1.0) > found + 0.1);
+        });
+        assert!(lamp > 10.0, "it is seen: {lamp}");
+        assert_eq!(outline > 5, exposure > 1.0, "{outline}");
+    }
 }
 
 /// A box with its fronts inside.
@@ -404,6 +439,46 @@ fn what_is_seen_inside_of_a_hood_has_no_light_from_outside() {
     }
 }
 
+/// A wall that ends within the floor, and patches that send light on one side of it only.
+#[test]
+fn no_light_leaks_through_a_wall_that_ends_within_a_floor() {
+    let upright = |x: f64, [low, high]: [f64; 2], height: f64| {
+        [[x, low, 0.0], [x, high, 0.0], [x, high, height], [x, low, height]]
+    };
+    let both = [vec![0, 1, 2, 3], vec![3, 2, 1, 0]];
+    let panel = upright(-1.0, [-0.5, 0.5], 0.5);
+    // Where no line of the floor's grid is along the wall, and where one is.
+    for low in [-2.1, -2.0] {
+        let scene = Scene::builder()
+            .mesh(&square([low, low], [2.0, 2.0], 0.0), &[vec![0, 1, 2, 3]], material("floor", RHO, 0.0))
+            .mesh(&upright(0.0, [-1.0, 1.0], 1.0), &both, material("wall", RHO, 0.0))
+            .mesh(&panel, &both[..1], material("panel", RHO, 0.0))
+            .build()
+            .expect("a scene");
+        let mesh = PatchMesh::new(&scene, 0.5).expect("a mesh");
+        let (patches, of, count) = (mesh.patches().expect("a scene"), mesh.polygons(), mesh.len());
+        let exchange = Exchange::of_mesh(&mesh, ExchangeOptions::default()).expect("patches");
+        let sends = |&polygon: &PolygonId| if polygon.0 == 3 { DVec3::ONE } else { DVec3::ZERO };
+        let radiosity: Vec<DVec3> = of.iter().map(sends).collect();
+        let nothing = vec![DVec3::ZERO; count];
+        let gathering = Indirect::new(&patches, &of, scene.polygon_count(), &nothing, &radiosity);
+        let options = SurfaceOptions { depth: 5, ..SurfaceOptions::default() };
+        let interpolating = gathering.clone().interpolated(&exchange, &mesh.regions(), &options).expect("a surface");
+        let [gathering, interpolating] = [gathering, interpolating]
+            .map(|with| shader(&scene, Shading::Contour).with_indirect(with).expect("its patches"));
+        let at = |of: &Shader, x: f64, y: f64| of.reflected(&floor_spot(x, y), DVec3::Z, 0).expect("shaded").x;
+        for k in 0..200 {
+            let [x, y] = [f64::from(k % 10) * 0.04 + 0.01, f64::from(k / 10) * 0.05 - 0.48];
+            // All that goes from the panel to a point behind the wall, between its ends, goes through it.
+            assert!(at(&interpolating, x, y) == 0.0, "{low} {x} {y}: {}", at(&interpolating, x, y));
+            assert!(at(&gathering, x, y) == 0.0);
+            // An edge is not halved if its middle is off by 0.03 of what is there; a point of a triangle by up to three times that.
+            let [exact, found] = [&gathering, &interpolating].map(|of| at(of, -x, y));
+            assert!(exact > 0.0 && (found / exact - 1.0).abs() < 0.09, "{low} {x} {y}: {found} {exact}");
+        }
+    }
+}
+
 #[test]
 fn a_picture_by_bands_is_the_same() {
     let scene = half_hidden();
@@ -411,14 +486,16 @@ fn a_picture_by_bands_is_the_same() {
     let (eye, size) = (DVec3::new(-3.5, 0.5, 1.0), UVec2::new(8200, 37));
     let camera = Frustum::new(DVec3::new(2.0, 0.0, 1.0), DVec3::Z, 1.0, 8200.0 / 37.0).expect("a camera");
     let whole = render(&shader, eye, &camera, size, &|_| ()).expect("a picture");
-    let (mut pixels, mut bands) = (Vec::new(), 0);
+    let (mut pixels, mut shown, mut bands) = (Vec::new(), Vec::new(), 0);
     let points = render_bands(&shader, eye, &camera, size, &|_| (), |band| {
         assert_eq!(band.radiances.len() % 8200, 0);
+        shown.extend(band.displayed(7.0));
         pixels.extend(band.radiances);
         bands += 1;
         Ok::<(), RenderError>(())
     });
     assert_eq!((points.ok(), &pixels[..]), (Some(whole.points), whole.picture.pixels()));
+    assert_eq!(shown, whole.displayed(7.0).pixels());
     // Of 513 squares side by side, one row of squares at a time.
     assert_eq!(bands, 3);
     assert!(whole.points > 8200 && pixels.iter().any(|&pixel| pixel != pixels[0]));

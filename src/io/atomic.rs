@@ -34,18 +34,29 @@ pub fn atomic_write<E: From<io::Error>>(
         write(&mut file)?;
         return Ok(file.flush()?);
     }
-    // A link stays a link: what it points to is replaced.
-    let target = if old.is_some() { fs::canonicalize(path)? } else { path.to_owned() };
-    let mut temporary = Temporary::create(&target)?;
+    let mut temporary = Temporary::beside(path)?;
     write(&mut temporary.file)?;
     temporary.file.flush()?;
     if let Some(old) = old {
         temporary.file.get_ref().set_permissions(old.permissions())?;
     }
     temporary.file.get_ref().sync_all()?;
-    fs::rename(&temporary.path, &target)?;
+    fs::rename(&temporary.path, &temporary.target)?;
     temporary.is_done = true;
     Ok(())
+}
+
+/// Makes sure that [`atomic_write`] could write a file now, so that no work is done for one that cannot be made: makes the file beside it, and removes it again. Whether what is not a regular file can be written is not looked at,
+/// as a pipe would wait for who reads it, but that it is a directory is told.
+///
+/// # Errors
+/// What making the file returns.
+pub fn check_writable(path: &Path) -> io::Result<()> {
+    match fs::metadata(path) {
+        Ok(old) if old.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(old) if !old.is_file() => Ok(()),
+        _ => Temporary::beside(path).map(drop),
+    }
 }
 
 /// The end of temporary names.
@@ -54,12 +65,20 @@ const ENDING: &str = ".tmp";
 /// A file under a name of its own, removed unless it is done.
 struct Temporary {
     path: PathBuf,
+    /// The name that it is to have.
+    target: PathBuf,
     file: BufWriter<File>,
     is_done: bool,
 }
 
 impl Temporary {
-    fn create(target: &Path) -> io::Result<Self> {
+    /// Of a file that is to have that name, or of the one that a link of that name leads to: it stays a link.
+    fn beside(path: &Path) -> io::Result<Self> {
+        let is_there = fs::metadata(path).is_ok();
+        Self::create(if is_there { fs::canonicalize(path)? } else { path.to_owned() })
+    }
+
+    fn create(target: PathBuf) -> io::Result<Self> {
         static COUNT: AtomicU64 = AtomicU64::new(0);
         let Some(name) = target.file_name() else {
             return Err(io::Error::new(io::ErrorKind::InvalidInput, "the path does not name a file"));
@@ -78,7 +97,7 @@ impl Temporary {
             // taken to be abandoned. One who was quicker holds it only to remove the file.
             let is_taken = matches!(file.try_lock(), Err(TryLockError::WouldBlock));
             if !is_taken && fs::symlink_metadata(&path).is_ok() {
-                return Ok(Self { path, file: BufWriter::new(file), is_done: false });
+                return Ok(Self { path, target, file: BufWriter::new(file), is_done: false });
             }
         }
     }
@@ -128,6 +147,24 @@ impl Drop for Temporary {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_cannot_be_written_is_known_before() {
+        let folder = std::env::temp_dir().join(format!("nusselt-writable-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).expect("a folder for tests");
+        let file = folder.join("a.npy");
+        check_writable(&file).expect("it is not there, and can be");
+        fs::write(&file, "old").expect("writable");
+        check_writable(&file).expect("it can be replaced");
+        assert_eq!(fs::read(&file).expect("as it was"), b"old");
+        let kind = |path: &Path| check_writable(path).expect_err("it cannot be written").kind();
+        assert_eq!(kind(&folder), io::ErrorKind::IsADirectory);
+        assert_eq!(kind(&folder.join("none").join("a.npy")), io::ErrorKind::NotFound);
+        assert_eq!(kind(&file.join("a.npy")), io::ErrorKind::NotADirectory);
+        assert_eq!(fs::read_dir(&folder).expect("it is there").count(), 1, "nothing is left");
+        fs::remove_dir_all(&folder).expect("it is there");
+    }
 
     #[test]
     fn only_temporary_files_of_the_target_that_no_one_writes_are_removed() {

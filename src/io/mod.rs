@@ -53,7 +53,7 @@ mod svg;
 mod told;
 mod visible_obj;
 
-pub use atomic::{atomic_write, remove_abandoned};
+pub use atomic::{atomic_write, check_writable, remove_abandoned};
 #[cfg(feature = "json")]
 pub use certificate::{
     CERTIFICATE_SCHEMA, CertificateError, KeptCertificate, SceneSize, read_certificate, write_certificate,

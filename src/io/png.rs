@@ -12,16 +12,15 @@ use std::io::{self, Write};
 /// # Errors
 /// Those of `out`.
 pub fn write_png(picture: &Picture, out: impl Write) -> io::Result<()> {
-    write_png_rows(picture.size(), 1.0, out, |rows| rows.write(picture.pixels()))
+    write_png_rows(picture.size(), out, |rows| rows.write(picture.pixels()))
 }
 
-/// Writes a PNG file row by row, for pictures that are too large to keep: `fill` writes all pixels. Colours are taken times `exposure`, and as by [`write_png`].
+/// Writes a PNG file row by row, for pictures that are too large to keep: `fill` writes all pixels. Colours are taken as by [`write_png`].
 ///
 /// # Errors
 /// Those of `out` and `fill`, or if `fill` wrote too few pixels.
 pub fn write_png_rows<W: Write, E: From<io::Error>>(
     size: UVec2,
-    exposure: f64,
     out: W,
     fill: impl FnOnce(&mut PngRows<'_, W>) -> Result<(), E>,
 ) -> Result<(), E> {
@@ -32,7 +31,7 @@ pub fn write_png_rows<W: Write, E: From<io::Error>>(
     encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
     let mut writer = encoder.write_header().map_err(failed)?;
     {
-        let mut rows = PngRows { writer: writer.stream_writer().map_err(failed)?, exposure };
+        let mut rows = PngRows { writer: writer.stream_writer().map_err(failed)? };
         fill(&mut rows)?;
         rows.writer.finish().map_err(failed)?;
     }
@@ -42,7 +41,6 @@ pub fn write_png_rows<W: Write, E: From<io::Error>>(
 /// The pixels of a PNG file, as they are written: see [`write_png_rows`].
 pub struct PngRows<'a, W: Write> {
     writer: png::StreamWriter<'a, W>,
-    exposure: f64,
 }
 
 impl<W: Write> PngRows<'_, W> {
@@ -54,7 +52,7 @@ impl<W: Write> PngRows<'_, W> {
         let mut bytes = Vec::new();
         for some in pixels.chunks(1 << 14) {
             bytes.clear();
-            bytes.extend(some.iter().flat_map(|&colour| (colour * self.exposure).to_array().map(encoded)));
+            bytes.extend(some.iter().flat_map(|&colour| colour.to_array().map(encoded)));
             self.writer.write_all(&bytes)?;
         }
         Ok(())
@@ -87,14 +85,12 @@ mod tests {
         let mut whole = Vec::new();
         write_png(&Picture::of_pixels(size, pixels.clone()).unwrap(), &mut whole).unwrap();
         let mut parts = Vec::new();
-        // Half of twice as much: nothing is rounded.
-        let twice: Vec<DVec3> = pixels.iter().map(|&colour| colour * 2.0).collect();
-        let fill = |rows: &mut PngRows<'_, _>| twice.chunks(4).try_for_each(|some| rows.write(some));
-        write_png_rows(size, 0.5, &mut parts, fill).unwrap();
+        let fill = |rows: &mut PngRows<'_, _>| pixels.chunks(4).try_for_each(|some| rows.write(some));
+        write_png_rows(size, &mut parts, fill).unwrap();
         assert_eq!(whole, parts);
         // Too few, or too many.
         for pixels in [&pixels[1..], &[&pixels[..], &pixels[..1]].concat()] {
-            assert!(write_png_rows(size, 1.0, Vec::new(), |rows| rows.write(pixels)).is_err());
+            assert!(write_png_rows(size, Vec::new(), |rows| rows.write(pixels)).is_err());
         }
     }
 

@@ -64,6 +64,11 @@ impl Picture {
         &self.pixels
     }
 
+    /// The same, to be changed.
+    pub(crate) fn pixels_mut(&mut self) -> &mut [DVec3] {
+        &mut self.pixels
+    }
+
     /// One pixel, counted from the upper left.
     ///
     /// # Panics

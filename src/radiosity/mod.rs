@@ -10,8 +10,10 @@
 
 mod balance;
 mod bounces;
+mod corners;
 mod error;
 mod gather;
+mod rings;
 mod solver;
 mod surface;
 mod uneven;
@@ -20,6 +22,7 @@ pub use balance::Balance;
 pub use bounces::Gathered;
 pub use error::RadiosityError;
 pub use gather::Gather;
+pub(crate) use rings::{normal, off};
 pub use solver::{Shot, Solver, SolverOptions, SolverState};
 pub use surface::{Surface, SurfaceOptions};
 pub use uneven::uneven_patches;

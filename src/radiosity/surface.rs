@@ -1,5 +1,7 @@
 //! A mesh of all surfaces with radiosities at its corners.
 
+use super::corners::Corners;
+use super::rings::mean_of;
 use super::{Gather, RadiosityError, strength};
 use crate::scene::{PieceId, PieceRef, PolygonId, Scene};
 use glam::DVec3;
@@ -30,7 +32,7 @@ impl Default for SurfaceOptions {
     }
 }
 
-/// Triangles with radiosities at their corners. Triangles of one polygon share corners; those of different polygons do not, as radiosities differ.
+/// Triangles with radiosities at their corners. Triangles of one polygon share corners, but not both sides of what stands on it; those of different polygons do not, as radiosities differ.
 ///
 /// A point that sees nothing but backs is *covered*: it is below something that stands there, and what it receives belongs inside of that. So triangles with all corners covered keep what they receive,
 /// as it is seen from inside. Those that are covered in part are seen from outside: their covered corners have the mean radiosity of those that are not, so that what stands there does not darken
@@ -93,33 +95,22 @@ impl Surface {
         let mut surface = Self::default();
         // What covers one patch and not the one beside it stands on the side between them, where both see it otherwise.
         let middles = middles_of_pieces(scene, gather, is_wanted, done)?;
-        let mut corners: FxHashMap<(PolygonId, bool, [u64; 3]), u32> = FxHashMap::default();
-        let mut places = Vec::new();
+        let pieces: Vec<PieceRef<'_>> = scene.pieces().filter(|piece| is_wanted(piece.polygon())).collect();
+        let is_below = |piece: &PieceRef<'_>| middles[&piece.id()].is_none();
+        let corners = Corners::new(scene, &pieces, |piece| (of[piece.polygon().index()], is_below(piece)));
+        let Corners { positions, places, of_pieces } = corners;
+        surface.positions = positions;
+        surface.check_size(options)?;
         let mut known: FxHashMap<[u32; 2], Option<DVec3>> = FxHashMap::default();
-        for patch in scene.polygons().filter(|patch| is_wanted(patch.id())) {
-            for piece in patch.pieces() {
-                let ring: Vec<DVec3> = piece.points().collect();
-                let middle = mean_of(&ring);
-                let in_middle = middles[&piece.id()];
-                let numbers = ring.iter().map(|&p| {
-                    let is_covered = in_middle.is_none();
-                    let key = (of[patch.id().index()], is_covered, p.to_array().map(f64::to_bits));
-                    *corners.entry(key).or_insert_with(|| {
-                        surface.positions.push(p);
-                        places.push((patch.id(), p.lerp(middle, INSIDE)));
-                        places.len() as u32 - 1
-                    })
-                });
-                let numbers: Vec<u32> = numbers.collect();
-                for triangle in fan(&ring, &numbers) {
-                    surface.triangles.push(triangle);
-                    surface.patches.push(patch.id());
-                }
-                if let Some(diagonal) = diagonal_through(middle, &ring, &numbers) {
-                    known.insert(diagonal, in_middle);
-                }
+        for (piece, numbers) in pieces.iter().zip(&of_pieces) {
+            let ring: Vec<DVec3> = piece.points().collect();
+            for triangle in fan(&ring, numbers) {
+                surface.triangles.push(triangle);
+                surface.patches.push(piece.polygon());
             }
-            surface.check_size(options)?;
+            if let Some(diagonal) = diagonal_through(mean_of(&ring), &ring, numbers) {
+                known.insert(diagonal, middles[&piece.id()]);
+            }
         }
         let patches: Vec<PolygonId> = places.iter().map(|place| place.0).collect();
         let found = gather.uncovered_at_all(places, done)?;
@@ -274,10 +265,6 @@ fn diagonal_through(middle: DVec3, ring: &[DVec3], numbers: &[u32]) -> Option<[u
     let [&a, &b] = [a?, b?];
     let is_near = ring.len() == 4 && a.midpoint(b).distance(middle) <= INSIDE * a.distance(b);
     is_near.then(|| [numbers[first], numbers[first + 2]]).map(|[p, q]| [p.min(q), p.max(q)])
-}
-
-fn mean_of(ring: &[DVec3]) -> DVec3 {
-    ring.iter().sum::<DVec3>() / ring.len() as f64
 }
 
 /// The sides of a triangle, from corner k to the next, each by the smaller corner first.

@@ -1,15 +1,15 @@
 //! Which patches are too large for what changes on them.
 
-use super::surface::INSIDE;
+use super::corners::Corners;
+use super::rings::mean_of;
 use super::{Gather, RadiosityError, strength};
-use crate::scene::{PolygonId, Scene};
+use crate::scene::{PieceRef, PolygonId, Scene};
 use glam::DVec3;
-use rustc_hash::FxHashMap;
 
 /// For every patch, whether radiosities gathered at its corners and in its middle differ by more than that part of their mean, or of the mean of what all
 /// patches reflect if that is larger (by the color channel in which they differ most). Such patches are to be halved ([`PatchMesh::halved`](crate::factors::PatchMesh::halved)).
 ///
-/// The scene is that of the patches; corners are shared by patches of one region ([`PatchMesh::regions`](crate::factors::PatchMesh::regions)). The cost is a view for
+/// The scene is that of the patches; corners are shared by patches of one region ([`PatchMesh::regions`](crate::factors::PatchMesh::regions)), but not by both sides of what stands on it. The cost is a view for
 /// every corner and every patch that reflects. Corners are taken a thousandth of the way inside, and left out where they are covered.
 ///
 /// # Errors
@@ -23,24 +23,16 @@ pub fn uneven_patches(
     gather: &Gather<'_>,
     part: f64,
 ) -> Result<Vec<bool>, RadiosityError> {
-    let mut numbers: FxHashMap<(PolygonId, [u64; 3]), usize> = FxHashMap::default();
-    let mut places = Vec::new();
+    let reflects = |piece: &PieceRef<'_>| gather.reflected(piece.polygon().index()).is_some();
+    let pieces: Vec<PieceRef<'_>> = patches.pieces().filter(reflects).collect();
+    let corners = Corners::new(patches, &pieces, |piece| regions[piece.polygon().index()]);
+    let mut places = corners.places;
     let mut places_of = vec![Vec::new(); patches.polygon_count()];
-    for patch in patches.polygons().filter(|patch| gather.reflected(patch.id().index()).is_some()) {
-        let own = &mut places_of[patch.id().index()];
-        for piece in patch.pieces() {
-            let ring: Vec<DVec3> = piece.points().collect();
-            let middle = ring.iter().sum::<DVec3>() / ring.len() as f64;
-            for &corner in &ring {
-                let key = (regions[patch.id().index()], corner.to_array().map(f64::to_bits));
-                own.push(*numbers.entry(key).or_insert_with(|| {
-                    places.push((patch.id(), corner.lerp(middle, INSIDE)));
-                    places.len() - 1
-                }));
-            }
-            own.push(places.len());
-            places.push((patch.id(), middle));
-        }
+    for (piece, numbers) in pieces.iter().zip(corners.of_pieces) {
+        let own = &mut places_of[piece.polygon().index()];
+        own.extend(numbers.into_iter().map(|number| number as usize));
+        own.push(places.len());
+        places.push((piece.polygon(), mean_of(&piece.points().collect::<Vec<_>>())));
     }
     let found = gather.uncovered_at_all(places, &|_| ())?;
     let mean = mean_reflected(gather);

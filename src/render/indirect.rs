@@ -1,10 +1,10 @@
 //! Interreflected light, from a solution of the radiosity.
 
 use super::RenderError;
-use super::patch_index::{PatchIndex, off};
+use super::patch_index::PatchIndex;
 use crate::contour::{ContourImage, SceneOrder};
 use crate::factors::Exchange;
-use crate::radiosity::{Gather, RadiosityError, Surface, SurfaceOptions};
+use crate::radiosity::{Gather, RadiosityError, Surface, SurfaceOptions, off};
 use crate::scene::{PolygonId, Scene, Side};
 use glam::DVec3;
 use std::f64::consts::PI;

@@ -27,6 +27,7 @@ mod error;
 mod indirect;
 mod leaves;
 mod lights;
+mod mixed;
 mod patch_index;
 mod picture;
 mod sampled;

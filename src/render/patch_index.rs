@@ -1,5 +1,6 @@
 //! Finding the patch that a point of a polygon is on.
 
+use crate::radiosity::{normal, off};
 use crate::scene::{PieceRef, PolygonId, Scene};
 use glam::{DVec2, DVec3, UVec2};
 
@@ -19,22 +20,6 @@ struct Grid {
     /// Where the patches of each cell begin in `patches`, and where the last ones end.
     starts: Vec<u32>,
     patches: Vec<PolygonId>,
-}
-
-/// How far out of a convex ring a point is, along its plane or off it; at most 0 inside.
-pub(super) fn off(ring: &[DVec3], point: DVec3) -> f64 {
-    let normal = normal(ring);
-    let sides = ring.iter().zip(ring.iter().cycle().skip(1)).map(|(&a, &b)| {
-        let outwards = (b - a).cross(normal).normalize_or_zero();
-        outwards.dot(point - a)
-    });
-    sides.fold(f64::NEG_INFINITY, f64::max) + normal.dot(point - ring[0]).abs()
-}
-
-/// The unit normal of a ring, or zero.
-fn normal(ring: &[DVec3]) -> DVec3 {
-    let doubled: DVec3 = ring.windows(2).map(|ends| (ends[0] - ring[0]).cross(ends[1] - ring[0])).sum();
-    doubled.normalize_or_zero()
 }
 
 impl PatchIndex {

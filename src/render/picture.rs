@@ -1,10 +1,12 @@
 //! From a camera to a picture.
 
+use super::mixed::Mixed;
 use super::{RenderError, Shader, Spot};
 use crate::contour::{Domain, Frustum, Viewpoint};
 use crate::parallel;
 use crate::picture::{Picture, PixelPart, PixelParts};
 use glam::{DVec3, UVec2};
+use std::ops::Range;
 
 /// A picture of a scene, and what it took.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,9 +17,18 @@ pub struct Rendered {
     pub points: usize,
     /// The largest of red, green and blue of what each pixel's surfaces reflect, without what they emit; NaN where none is seen.
     reflected: Vec<f64>,
+    mixed: Mixed,
 }
 
 impl Rendered {
+    /// The picture as a screen shows it whose white is 1: radiances times `exposure`, cut off at 1 in each part of a pixel before these are averaged. So the outline of a lamp is as smooth as others
+    /// are: a mean of its radiance, far above white, and of what is beside it would be white wherever the lamp has but a small part of a pixel.
+    pub fn displayed(&self, exposure: f64) -> Picture {
+        let mut picture = self.picture.clone();
+        self.mixed.display(picture.pixels_mut(), exposure);
+        picture
+    }
+
     /// A factor for radiances that brings what is reflected to at most 0.8 in 95% of the pixels that show a surface; 1 if nothing is reflected.
     pub fn auto_exposure(&self) -> f64 {
         let mut found: Vec<f64> = self.reflected.iter().copied().filter(|radiance| !radiance.is_nan()).collect();
@@ -37,6 +48,16 @@ pub struct Band {
     pub radiances: Vec<DVec3>,
     /// As [`Rendered`] has them.
     reflected: Vec<f64>,
+    mixed: Mixed,
+}
+
+impl Band {
+    /// What a screen shows, as [`Rendered::displayed`].
+    pub fn displayed(&self, exposure: f64) -> Vec<DVec3> {
+        let mut pixels = self.radiances.clone();
+        self.mixed.display(&mut pixels, exposure);
+        pixels
+    }
 }
 
 /// The sides of the squares of pixels that threads share.
@@ -47,7 +68,7 @@ const BATCH: u32 = 1024;
 /// Renders what a camera at `eye` sees. `done` is told from any thread how many more pixels are.
 ///
 /// Which polygon is seen in what part of a pixel is exact; each is shaded at one point of that part ([`PixelPart::direction`]), and the pixel is the sum of areas times radiances. The result does not depend
-/// on the number of threads. Memory: 32 bytes for each pixel, and what [`render_bands`] takes.
+/// on the number of threads. Memory: 32 bytes for each pixel, as many for each part of those that show more than one polygon, and what [`render_bands`] takes.
 ///
 /// # Errors
 /// If the picture would have no pixels or too many, if there is no view of the camera, if a point cannot be shaded, or if a radiance is not finite.
@@ -61,11 +82,13 @@ pub fn render(
     Picture::check_size(size)?;
     let mut whole = Band::default();
     let points = render_bands(shader, eye, camera, size, done, |band| {
+        whole.mixed.append(&band.mixed, whole.radiances.len());
         whole.radiances.extend(band.radiances);
         whole.reflected.extend(band.reflected);
         Ok::<(), RenderError>(())
     })?;
-    Ok(Rendered { picture: Picture::of_pixels(size, whole.radiances)?, points, reflected: whole.reflected })
+    let Band { radiances, reflected, mixed } = whole;
+    Ok(Rendered { picture: Picture::of_pixels(size, radiances)?, points, reflected, mixed })
 }
 
 /// The same, but rows are given away as soon as they are made, some at a time, from the top; for pictures that are too large to keep. Gives the number of points that were shaded. Memory: the contour image, some
@@ -100,13 +123,15 @@ pub fn render_bands<E: From<RenderError>>(
             tile
         });
         let count = size.x as usize * (bottom - top) as usize;
-        let mut band = Band { radiances: vec![DVec3::ZERO; count], reflected: vec![f64::NAN; count] };
+        let mixed = Mixed::default();
+        let mut band = Band { radiances: vec![DVec3::ZERO; count], reflected: vec![f64::NAN; count], mixed };
         for tile in tiles {
             let tile = tile?;
             points += tile.points;
-            for (x, y, colour, largest) in tile.pixels {
-                let at = (y - top) as usize * size.x as usize + x as usize;
-                (band.radiances[at], band.reflected[at]) = (colour, largest);
+            for pixel in tile.pixels {
+                let at = (pixel.y - top) as usize * size.x as usize + pixel.x as usize;
+                (band.radiances[at], band.reflected[at]) = (pixel.radiance, pixel.reflected);
+                band.mixed.push(at, &tile.parts[pixel.parts]);
             }
         }
         take(band)?;
@@ -114,53 +139,70 @@ pub fn render_bands<E: From<RenderError>>(
     Ok(points)
 }
 
-/// The pixels of a tile: column, row, radiance, and the largest of what is reflected.
+/// The pixels of a tile, and what their parts send: areas and radiances.
+#[derive(Default)]
 struct Tile {
-    pixels: Vec<(u32, u32, DVec3, f64)>,
+    pixels: Vec<Pixel>,
+    parts: Vec<(f64, DVec3)>,
     points: usize,
+}
+
+struct Pixel {
+    x: u32,
+    y: u32,
+    radiance: DVec3,
+    /// The largest of what its surfaces reflect.
+    reflected: f64,
+    /// Its parts among those of the tile.
+    parts: Range<usize>,
 }
 
 impl Tile {
     fn new(shader: &Shader, parts: &PixelParts<'_>, low: UVec2) -> Result<Self, RenderError> {
-        let mut tile = Self { pixels: Vec::new(), points: 0 };
+        let mut tile = Self::default();
         let mut failure = None;
         parts.tile(low, low + TILE, |x, y, of_pixel| {
             if failure.is_none() {
-                let number = u64::from(y) << 32 | u64::from(x);
-                match shade(shader, parts, number, of_pixel) {
-                    Ok((colour, _)) if !colour.is_finite() => failure = Some(RenderError::TooBright { x, y }),
-                    Ok((colour, reflected)) => tile.pixels.push((x, y, colour, reflected)),
-                    Err(error) => failure = Some(error),
-                }
-                tile.points += of_pixel.iter().filter(|part| part.polygon.is_some()).count();
+                failure = tile.shade(shader, parts, UVec2::new(x, y), of_pixel).err();
             }
         });
         failure.map_or(Ok(tile), Err)
     }
-}
 
-/// The radiance of a pixel, and the largest of what its surfaces reflect.
-fn shade(
-    shader: &Shader,
-    parts: &PixelParts<'_>,
-    number: u64,
-    of_pixel: &[PixelPart],
-) -> Result<(DVec3, f64), RenderError> {
-    let (mut sum, mut reflected, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
-    for (k, part) in of_pixel.iter().enumerate() {
-        let cell = parts.image().cell(part.cell);
-        let Some((piece, side)) = cell.piece().zip(part.side) else {
-            sum += shader.background(part.direction) * part.area;
-            continue;
-        };
-        // Of a plane that is seen edge-on: the nearest point of the piece will do.
-        let near = cell.point_at(part.direction).unwrap_or(cell.image().viewpoint().eye());
-        let spot = Spot { piece, side, near };
-        let seed = number.wrapping_mul(64).wrapping_add(k as u64);
-        let from_light = shader.reflected_where_seen(&spot, -part.direction, seed)?;
-        sum += (shader.emitted(&spot) + from_light) * part.area;
-        reflected += from_light * part.area;
-        area += part.area;
+    /// Adds a pixel.
+    fn shade(
+        &mut self,
+        shader: &Shader,
+        parts: &PixelParts<'_>,
+        at: UVec2,
+        of_pixel: &[PixelPart],
+    ) -> Result<(), RenderError> {
+        let number = u64::from(at.y) << 32 | u64::from(at.x);
+        let start = self.parts.len();
+        let (mut sum, mut reflected, mut area) = (DVec3::ZERO, DVec3::ZERO, 0.0);
+        for (k, part) in of_pixel.iter().enumerate() {
+            let cell = parts.image().cell(part.cell);
+            let radiance = if let Some((piece, side)) = cell.piece().zip(part.side) {
+                // Of a plane that is seen edge-on: the nearest point of the piece will do.
+                let near = cell.point_at(part.direction).unwrap_or(cell.image().viewpoint().eye());
+                let spot = Spot { piece, side, near };
+                let seed = number.wrapping_mul(64).wrapping_add(k as u64);
+                let from_light = shader.reflected_where_seen(&spot, -part.direction, seed)?;
+                reflected += from_light * part.area;
+                area += part.area;
+                self.points += 1;
+                shader.emitted(&spot) + from_light
+            } else {
+                shader.background(part.direction)
+            };
+            self.parts.push((part.area, radiance));
+            sum += radiance * part.area;
+        }
+        if !sum.is_finite() {
+            return Err(RenderError::TooBright { x: at.x, y: at.y });
+        }
+        let reflected = if area > 0.0 { (reflected / area).max_element() } else { f64::NAN };
+        self.pixels.push(Pixel { x: at.x, y: at.y, radiance: sum, reflected, parts: start..self.parts.len() });
+        Ok(())
     }
-    Ok((sum, if area > 0.0 { (reflected / area).max_element() } else { f64::NAN }))
 }

@@ -3,7 +3,7 @@
 use crate::args::{Common, Loading, Order, Way};
 use crate::failure::Failure;
 use crate::materials::Materials;
-use crate::output::{clear, have_folders, keep};
+use crate::output::{can_be_written, clear, keep};
 use crate::repairs::changes;
 use nusselt::bsp::{BspError, BspOptions, SceneBsp};
 use nusselt::bvh::SceneBvh;
@@ -32,8 +32,8 @@ pub(crate) fn load_materials<'a>(
     common: &Common,
 ) -> Result<(Scene, Materials, f64), Failure> {
     keep(&[path.to_owned()], outputs.clone())?;
-    have_folders(outputs.clone())?;
     outputs.clone().for_each(clear);
+    can_be_written(outputs.clone())?;
     let start = Instant::now();
     let loaded = read_scene(path, &loading.options()).map_err(|error| refused(&error, &loading.repair))?;
     let seconds = start.elapsed().as_secs_f64();

@@ -1,7 +1,7 @@
 //! Files and standard output.
 
 use crate::failure::Failure;
-use nusselt::io::{atomic_write, mtl, obj, remove_abandoned};
+use nusselt::io::{atomic_write, check_writable, mtl, obj, remove_abandoned};
 use nusselt::scene::Scene;
 use std::fmt::Display;
 use std::fs::File;
@@ -52,8 +52,13 @@ impl Unwritten {
             Self::Failed(failure) => failure,
             Self::Io(error) => {
                 let advice = match error.kind() {
-                    ErrorKind::NotFound => "; make its directory first",
-                    ErrorKind::PermissionDenied => "; choose a directory that you may write to",
+                    ErrorKind::NotFound | ErrorKind::NotADirectory => {
+                        "; no file can be made there: choose another directory"
+                    }
+                    ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
+                        "; choose a directory that you may write to"
+                    }
+                    ErrorKind::IsADirectory => "; name a file in it",
                     _ => "",
                 };
                 Failure::Work(format!("cannot write {target}: {error}{advice}"))
@@ -113,15 +118,20 @@ pub(crate) fn check_once<'a>(outputs: impl Iterator<Item = &'a Path>) -> Result<
     Ok(())
 }
 
-/// Refuses outputs in folders that do not exist, before any work is done for them.
-pub(crate) fn have_folders<'a>(mut outputs: impl Iterator<Item = &'a Path>) -> Result<(), Failure> {
-    let has_none = |output: &&Path| {
+/// Refuses outputs that cannot be written, as their folders do not exist or take no files, before any work is done for them.
+pub(crate) fn can_be_written<'a>(outputs: impl Iterator<Item = &'a Path>) -> Result<(), Failure> {
+    for output in outputs {
         let folder = output.parent().filter(|folder| !folder.as_os_str().is_empty());
-        folder.is_some_and(|folder| !folder.is_dir())
-    };
-    let Some(output) = outputs.find(has_none) else { return Ok(()) };
-    let folder = output.parent().unwrap_or(output).display();
-    Err(Failure::Work(format!("cannot write {}: {folder} does not exist; make its directory first", output.display())))
+        if let Some(folder) = folder.filter(|folder| !folder.exists()) {
+            let [output, folder] = [output, folder].map(Path::display);
+            let what = format!("cannot write {output}: {folder} does not exist; make its directory first");
+            return Err(Failure::Work(what));
+        }
+        for file in written(output) {
+            check_writable(&file).map_err(|error| Unwritten::Io(error).about(file.display()))?;
+        }
+    }
+    Ok(())
 }
 
 /// Refuses outputs that would replace one of the files that are read.

@@ -190,7 +190,7 @@ impl Render {
             points += rendered.points;
             let exposure = *exposure.get_or_insert_with(|| rendered.auto_exposure());
             for (j, output) in self.output.iter().enumerate() {
-                output.write(&files[j * cameras.len() + k], &rendered.picture, exposure)?;
+                output.write(&files[j * cameras.len() + k], &rendered, exposure)?;
             }
         }
         drop(progress);
@@ -270,9 +270,9 @@ impl Render {
     ) -> Result<usize, Failure> {
         let mut points = 0;
         write_results(file, |out| {
-            write_png_rows(self.size, exposure, out, |rows| {
+            write_png_rows(self.size, out, |rows| {
                 let done = |count| progress.add(count);
-                let take = |band: Band| Ok(rows.write(&band.radiances)?);
+                let take = |band: Band| Ok(rows.write(&band.displayed(exposure))?);
                 let result = render_bands(shader, camera.eye, &camera.frustum, self.size, &done, take);
                 points = result.map_err(|error| match error {
                     Unmade::Io(error) => Unwritten::Io(error),

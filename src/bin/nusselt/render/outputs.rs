@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use crate::output::{check_once, is_same_file, write_file};
-use nusselt::io::write_png_rows;
-use nusselt::picture::Picture;
+use nusselt::io::write_png;
+use nusselt::render::Rendered;
 use std::path::{Path, PathBuf};
 
 /// A file to write, or one for each picture of a sequence.
@@ -40,13 +40,11 @@ impl Output {
     }
 
     /// Writes one picture.
-    pub(super) fn write(&self, file: &Path, picture: &Picture, exposure: f64) -> Result<(), Failure> {
+    pub(super) fn write(&self, file: &Path, rendered: &Rendered, exposure: f64) -> Result<(), Failure> {
         match self.format {
-            Format::Png => write_file(file, |out| {
-                write_png_rows(picture.size(), exposure, out, |rows| rows.write(picture.pixels()))
-            }),
+            Format::Png => write_file(file, |out| write_png(&rendered.displayed(exposure), out)),
             #[cfg(feature = "exr")]
-            Format::Exr => write_file(file, |out| nusselt::io::write_exr(picture, out)),
+            Format::Exr => write_file(file, |out| nusselt::io::write_exr(&rendered.picture, out)),
             #[cfg(not(feature = "exr"))]
             Format::Exr => unreachable!("refused when the command line was read"),
         }
