@@ -89,7 +89,7 @@ impl Partly<'_> {
         points.space.bounds = Some(Vec::new());
         let mut quads = points.whole(self.parts, OF_WHOLE);
         // What is below that is not worth a look, unless nothing at all has been seen of what is between: all may be wrong then.
-        let is_blind = points.space.bounds.as_ref().is_some_and(Vec::is_empty);
+        let is_blind = points.space.bounds.as_ref().is_some_and(Vec::is_empty) || quads.is_nothing(at_most);
         if is_blind || OF_MANY * at_most + quads.error() > allowed {
             let own = Target::new(self.facets, self.elements, [self.to, self.from], self.between, back);
             let missed = points.space.not_noted(self.bounds_seen(&own, back));

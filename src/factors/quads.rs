@@ -135,11 +135,17 @@ impl Quads {
         self.waiting.iter().map(|quad| quad.sample.value).sum()
     }
 
+    /// True if there is no more than rounding leaves of slivers of what is hidden, of a factor that is nowhere larger than this with nothing between.
+    pub(super) fn is_nothing(&self, at_most: f64) -> bool {
+        self.value().abs().max(self.error()) <= ROUNDING * at_most
+    }
+
     /// The integral, of a factor that is nowhere larger than this with nothing between.
     pub(super) fn total(self, at_most: f64) -> Share {
+        if self.is_nothing(at_most) {
+            return Share::default();
+        }
         let error = self.error();
-        let factor = self.waiting.into_sorted_vec().iter().fold(0.0, |sum, quad| sum + quad.sample.value);
-        // Rounding leaves slivers of what is hidden.
-        if factor.abs().max(error) <= ROUNDING * at_most { Share::default() } else { Share { factor, error } }
+        Share { factor: self.waiting.into_sorted_vec().iter().fold(0.0, |sum, quad| sum + quad.sample.value), error }
     }
 }

@@ -57,6 +57,9 @@ struct Edge {
     side: FacetSide,
 }
 
+/// What places and heights may be off by, relative to their terms.
+const ROUNDING: f64 = 1e-9;
+
 /// Where `along . p + offset` is not negative.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HalfPlane {
@@ -82,10 +85,11 @@ impl HalfPlane {
         points.iter().all(|&p| self.height(p) <= 0.0)
     }
 
-    /// The side of a ring that is on its boundary, up to rounding.
+    /// The side of a ring that is on its boundary, up to rounding: none of what is no more than rounding has left.
     pub(super) fn bounds(&self, ring: &[DVec2]) -> Option<[DVec2; 2]> {
         let is_on = |p: DVec2| self.height(p).abs() <= self.rounding(p);
-        sides(ring).find(|&[a, b]| is_on(a) && is_on(b))
+        let is_long = |a: DVec2, b: DVec2| (b - a).abs().max_element() > ROUNDING * a.abs().max(b.abs()).max_element();
+        sides(ring).find(|&[a, b]| is_on(a) && is_on(b) && is_long(a, b)).filter(|_| self.reaches_beyond(ring))
     }
 
     /// True if a corner of a ring is outside by more than rounding.
@@ -95,7 +99,7 @@ impl HalfPlane {
 
     /// What a height may be off by. It decides nothing of what is seen, only where one looks for more.
     fn rounding(&self, p: DVec2) -> f64 {
-        1e-9 * (self.along.length() * p.abs().max_element()).max(self.offset.abs())
+        ROUNDING * (self.along.length() * p.abs().max_element()).max(self.offset.abs())
     }
 }
 
