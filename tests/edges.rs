@@ -173,6 +173,27 @@ fn cubes_that_pass_through_each_other_have_lines_where_they_do() {
     assert!(svg.contains("class=\"crossing\""));
 }
 
+// The eye is as far from one plane as from the other: where they meet is a circle that the view is divided along before it meets any polygon.
+#[test]
+fn sheets_that_pass_through_each_other_have_a_line_from_everywhere() {
+    let vertices = [
+        [[0., 0., 0.], [2., 0., 0.], [2., 2., 0.], [0., 2., 0.]],
+        [[1., 0., -1.], [1., 2., -1.], [1., 2., 1.], [1., 0., 1.]],
+    ];
+    let faces = [vec![0, 1, 2, 3], vec![4, 5, 6, 7]];
+    let scene = Scene::builder().mesh(vertices.as_flattened(), &faces, Material::new("grey")).build();
+    let scene = scene.expect("a scene");
+    for eye in [[4., -3., 3.], [4., -3.1, 2.9], [4., 1., 3.], [-1.5, -3., 2.5], [2., 1., 1.]] {
+        let (counts, _) = draw(&scene, DVec3::from(eye), &DrawingOptions::default());
+        assert_eq!(counts.crossings, 1, "{eye:?}: {counts:?}");
+    }
+    // Nor is there one where two meet in an edge.
+    let cube = boxes(&[[DVec3::splat(-1.0), DVec3::ONE]]);
+    for eye in [[3., -3., 3.], [3., 3., 2.], [4., 0.2, 4.]] {
+        assert_eq!(draw(&cube, DVec3::from(eye), &DrawingOptions::default()).0.crossings, 0);
+    }
+}
+
 #[test]
 fn a_sheet_has_borders_and_none_between_its_tiles() {
     let vertices: Vec<[f64; 3]> = (0..9).map(|k| [f64::from(k % 3) - 1.0, f64::from(k / 3) - 1.0, 0.0]).collect();

@@ -6,6 +6,7 @@
 
 mod arrangement;
 pub(crate) mod circles;
+mod crossings;
 pub(crate) mod mosaic;
 pub(crate) mod outlines;
 pub(crate) mod places;
@@ -85,6 +86,8 @@ pub struct RegionSide {
     pub from: DVec3,
     /// Its length in radians, rounded: less than 2 pi but for a whole great circle.
     pub length: f64,
+    /// True if the polygons seen to both sides of it pass through each other here.
+    pub is_crossing: bool,
 }
 
 impl ContourImage {
@@ -137,16 +140,19 @@ impl ContourImage {
             let length = outlines.chains[run.chain as usize].length;
             match sides.last_mut() {
                 Some(side) if outlines.go_on(before(k), run) => side.length += length,
-                _ => sides.push(RegionSide {
-                    splitter: outlines
-                        .mosaic
-                        .directions
-                        .splitter(skeleton, outlines.circles.name(outlines.circle(run.chain))),
-                    inside: inside(run),
-                    turn: outlines.turn(before(k), run),
-                    from: outlines.unit(outlines.start(run)),
-                    length,
-                }),
+                _ => {
+                    let circle = outlines.circles.name(outlines.circle(run.chain));
+                    let splitter = outlines.mosaic.directions.splitter(skeleton, circle);
+                    sides.push(RegionSide {
+                        splitter,
+                        inside: inside(run),
+                        turn: outlines.turn(before(k), run),
+                        from: outlines.unit(outlines.start(run)),
+                        length,
+                        is_crossing: matches!(splitter, Splitter::Crease(_))
+                            || crossings::is_crossing(self, outlines, run, circle),
+                    });
+                }
             }
         }
         RegionLoop { sides }

@@ -161,7 +161,7 @@ impl<'a> Outlines<'a> {
     }
 
     /// The face to the left of the start of a run.
-    fn face_beside(&self, run: Run) -> Option<u32> {
+    pub(super) fn face_beside(&self, run: Run) -> Option<u32> {
         self.arrangement.face_beside(self.first_half(run))
     }
 

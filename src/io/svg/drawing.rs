@@ -2,7 +2,7 @@
 
 use super::paint::{Paint, hex};
 use super::{Canvas, Escaped, MARGIN, Number, PathData};
-use crate::contour::{ContourImage, EdgeTracer, Projector, RegionLoop, Splitter, VisibleRegion};
+use crate::contour::{ContourImage, EdgeTracer, Projector, RegionLoop, VisibleRegion};
 use crate::exact::Sign;
 use crate::scene::{EdgeId, PieceId, PolygonId, Scene};
 use glam::{DVec2, DVec3};
@@ -187,7 +187,7 @@ impl Lines {
         for sides in image.regions().iter().flat_map(VisibleRegion::loops).map(RegionLoop::sides) {
             for (side, next) in sides.iter().zip(sides.iter().cycle().skip(1)) {
                 // Both regions beside it have it.
-                if matches!(side.splitter, Splitter::Crease(_)) && side.inside == Sign::Positive {
+                if side.is_crossing && side.inside == Sign::Positive {
                     counts.crossings += 1;
                     add_arc(canvas, [side.from, next.from], &mut lines.crossings);
                 }
