@@ -134,6 +134,9 @@ fn fills(
         for ring in std::iter::once(&region.exterior).chain(&region.holes) {
             data.add(ring.iter().map(|&p| canvas.place(p)), true);
         }
+        if region.holes.is_empty() && !data.is_empty() {
+            data.add_point();
+        }
         let colour = match (options.fill, region.polygon) {
             (Fill::White, _) => "#ffffff".to_owned(),
             (Fill::Shaded, polygon) => paint.of(polygon),

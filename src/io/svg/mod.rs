@@ -201,6 +201,15 @@ impl PathData {
             self.0.push('Z');
         }
     }
+
+    /// Adds a contour of no area where the first one starts. Chromium fills what is one convex contour by a way of its own, which leaves out pixels inside of it if a side is
+    /// a small part of a pixel long (seen in version 148).
+    fn add_point(&mut self) {
+        if let Some(first) = self.0.split([' ', 'Z']).next().map(str::to_owned) {
+            self.0.push_str(&first);
+            self.0.push('Z');
+        }
+    }
 }
 
 impl Display for PathData {
