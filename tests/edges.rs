@@ -8,7 +8,7 @@ use nusselt::bvh::SceneBvh;
 use nusselt::contour::{ContourImage, Domain, Frustum, Projection, Projector, Viewpoint};
 use nusselt::io::{DrawingCounts, DrawingOptions, Fill, write_drawing};
 use nusselt::samples::{Kind, generate};
-use nusselt::scene::{EdgeId, Material, Scene};
+use nusselt::scene::{EdgeId, FaceSpec, Material, Scene};
 use nusselt::testing::{Mode, free_viewpoint, scene};
 use nusselt::verify::{RayAnswer, RayOracle};
 use proptest::prelude::*;
@@ -171,6 +171,40 @@ fn cubes_that_pass_through_each_other_have_lines_where_they_do() {
     // Where the bar leaves the cube's face towards the eye two of four sides are seen.
     assert_eq!(counts.crossings, 2, "{counts:?}");
     assert!(svg.contains("class=\"crossing\""));
+}
+
+#[test]
+fn an_edge_of_many_polygons_is_a_silhouette_too() {
+    let twice = boxes(&[[DVec3::splat(-1.0), DVec3::ONE]; 2]);
+    let mut builder = Scene::builder();
+    let (material, object) = (builder.add_material(Material::new("grey")), builder.add_object("cubes"));
+    let corners: Vec<_> = twice.vertices()[..8].iter().map(|&p| builder.add_vertex(p)).collect();
+    for polygon in twice.polygons() {
+        let ring = polygon.rings()[0].iter().map(|vertex| corners[vertex.index() % 8]).collect();
+        builder.add_face(FaceSpec { rings: vec![ring], object, material });
+    }
+    let scene = builder.build().expect("a scene");
+    assert_eq!(scene.edges().len(), 12);
+    let (counts, _) = draw(&scene, DVec3::new(5.0, 4.0, 3.0), &DrawingOptions::default());
+    assert_eq!((counts.silhouettes, counts.creases), (6, 3), "{counts:?}");
+}
+
+#[test]
+fn a_line_is_between_two_materials_and_none_within_one() {
+    for (other, creases) in [("white", 1), ("grey", 0)] {
+        let mut builder = Scene::builder();
+        let materials = [builder.add_material(Material::new("grey")), builder.add_material(Material::new("white"))];
+        let object = builder.add_object("sheet");
+        for [x, y] in [[-1., -1.], [0., -1.], [1., -1.], [-1., 1.], [0., 1.], [1., 1.]] {
+            builder.add_vertex(DVec3::new(x, y, 0.0));
+        }
+        let second = materials[usize::from(other == "white")];
+        builder.add_face(FaceSpec { rings: vec![vec![0, 1, 4, 3]], object, material: materials[0] });
+        builder.add_face(FaceSpec { rings: vec![vec![1, 2, 5, 4]], object, material: second });
+        let scene = builder.build().expect("a scene");
+        let (counts, _) = draw(&scene, DVec3::new(0.5, 0.3, 4.0), &DrawingOptions::default());
+        assert_eq!((counts.creases, counts.borders), (creases, 6), "{other}: {counts:?}");
+    }
 }
 
 // The eye is as far from one plane as from the other: where they meet is a circle that the view is divided along before it meets any polygon.

@@ -3,6 +3,7 @@
 
 mod field;
 mod fragments;
+mod quadtree;
 mod receiver;
 mod shop;
 mod studio;
@@ -15,9 +16,10 @@ use std::path::{Path, PathBuf};
 /// Where a figure is written, by its name.
 type Figure = fn(&Path) -> Result<(), Box<dyn Error>>;
 
-const FIGURES: [(&str, Figure); 5] = [
+const FIGURES: [(&str, Figure); 6] = [
     ("fragments", fragments::draw),
     ("tree", tree::draw),
+    ("quadtree", quadtree::draw),
     ("receiver", receiver::draw),
     ("studio", studio::write),
     ("field", field::draw),

@@ -1,12 +1,10 @@
-//! What a quadtree at the top of the contour tree gains, on the faces of a cube and on image planes, and how it looks.
+//! What a quadtree at the top of the contour tree gains, on the faces of a cube and on image planes.
 
 use crate::range;
 use glam::DVec3;
 use nusselt::bvh::SceneBvh;
-use nusselt::contour::{Domain, Projection, Projector, Quadtree, Spacing, ViewOptions, ViewSpace, Viewpoint};
-use nusselt::io::{SvgOptions, atomic_write, write_svg};
+use nusselt::contour::{Domain, Quadtree, Spacing, ViewOptions, ViewSpace, Viewpoint};
 use nusselt::samples::{Kind, Mesh, generate};
-use nusselt::scene::Scene;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
@@ -18,14 +16,7 @@ const VIEWS: usize = 30;
 const PLANES_IN: (Kind, usize) = (Kind::Room, 50_000);
 const UP: Domain = Domain::Hemisphere(DVec3::Z);
 
-pub(crate) fn part(images: &Path) -> Result<String, Box<dyn Error>> {
-    for (name, quadtree) in [
-        ("quadtree-cube", Quadtree::Cube),
-        ("quadtree-even", Quadtree::Plane { degrees: 170.0, spacing: Spacing::Even }),
-        ("quadtree-centre", Quadtree::Plane { degrees: 170.0, spacing: Spacing::TowardsCentre }),
-    ] {
-        draw(&images.join(format!("{name}.svg")), quadtree)?;
-    }
+pub(crate) fn part(_: &Path) -> Result<String, Box<dyn Error>> {
     let mut text = String::from(
         "Milliseconds a view with all form factors, or solid angles for the sphere; depths across.\n\n| scene | polygons | domain | quadtree |",
     );
@@ -134,14 +125,4 @@ fn depths(bvh: &SceneBvh, mesh: &Mesh, domain: &Domain, quadtree: Quadtree) -> R
         }
     }
     Ok(depths)
-}
-
-/// The quadtree alone, four levels deep.
-fn draw(path: &Path, quadtree: Quadtree) -> Result<(), Box<dyn Error>> {
-    let bvh = SceneBvh::build(&Scene::builder().build()?);
-    let options = ViewOptions { quadtree_depth: Some(4), quadtree, ..ViewOptions::default() };
-    let image = bvh.view_with(&Viewpoint::free(DVec3::ZERO), &UP, &options)?;
-    let projector = Projector::of_image(&image, Projection::Stereographic)?;
-    let options = SvgOptions { show_tree: true, ..SvgOptions::default() };
-    Ok(atomic_write(path, |file| write_svg(&image, &projector, &options, file))?)
 }

@@ -4,7 +4,7 @@ use super::paint::{Paint, hex};
 use super::{Canvas, Escaped, MARGIN, Number, PathData};
 use crate::contour::{ContourImage, EdgeTracer, Projector, RegionLoop, VisibleRegion};
 use crate::exact::Sign;
-use crate::scene::{EdgeId, PieceId, PolygonId, Scene};
+use crate::scene::{EdgeId, PieceId, PolygonId, Scene, Side};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
 use std::io::{self, BufWriter, Write};
@@ -60,11 +60,11 @@ pub struct DrawingCounts {
 /// The kind of an edge from where the eye is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
-    /// Between polygons whose surface turns there, or of two materials, or of more than two.
+    /// Between polygons whose surface turns there, or of two materials, or of more than two polygons.
     Crease,
     /// Of one polygon only.
     Border,
-    /// Between a polygon that shows its front and one that shows its back.
+    /// All polygons that have it are seen on one side of it: of two, one shows its front and one its back.
     Silhouette,
 }
 
@@ -230,18 +230,20 @@ fn kind(image: &ContourImage, tracer: &EdgeTracer<'_>, edge: EdgeId, crease: f64
     if pieces.iter().all(|&piece| polygon(piece) == polygon(first)) {
         return (pieces.len() == 1).then_some(Kind::Border);
     }
+    let eye = image.viewpoint().eye();
+    // None of what is seen edge on.
+    let is_left = |piece: PieceId| {
+        let shown = image.skeleton().shown_side(scene.piece(piece), eye)?;
+        Some((shown == Side::Front) == runs_forward(scene, piece, edge))
+    };
+    let mut sides = pieces.iter().filter_map(|&piece| is_left(piece));
+    let side = sides.next();
+    if sides.all(|other| Some(other) == side) {
+        return Some(Kind::Silhouette);
+    }
     let &[a, b] = pieces else { return Some(Kind::Crease) };
     // Of a surface that is turned one way the two run along the edge in opposite ways.
     let is_turned = runs_forward(scene, a, edge) == runs_forward(scene, b, edge);
-    let shown = |piece: PieceId| image.skeleton().shown_side(scene.piece(piece), image.viewpoint().eye());
-    let is_silhouette = match (shown(a), shown(b)) {
-        (Some(a), Some(b)) => (a == b) == is_turned,
-        // Seen edge on.
-        _ => true,
-    };
-    if is_silhouette {
-        return Some(Kind::Silhouette);
-    }
     let [n, m] = [a, b].map(|piece| normal(scene, piece));
     let cosine = if is_turned { -n.dot(m) } else { n.dot(m) };
     let differs = |a: PolygonId, b: PolygonId| scene.polygon(a).material_id() != scene.polygon(b).material_id();
