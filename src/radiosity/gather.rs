@@ -80,12 +80,4 @@ impl<'a> Gather<'a> {
         });
         found.into_iter().collect()
     }
-
-    /// [`Gather::at`] for many points, in their order, by all threads.
-    ///
-    /// # Errors
-    /// The first one that there is no view from.
-    pub fn at_all(&self, points: Vec<(PolygonId, DVec3)>) -> Result<Vec<DVec3>, RadiosityError> {
-        parallel::map(points, |(patch, near)| self.at(patch, near)).into_iter().collect()
-    }
 }
