@@ -26,7 +26,7 @@ Examples: a room in patches of at most 0.3 m, for a viewer and as a page that sh
 Patches halved twice where the light changes on them by more than a half
   nusselt radiosity room.obj --patch 1 --subdivide 2 --gradient 0.5 -o room.html
 
-A long one, kept every ten seconds, and on again after an interruption
+A long one, kept again and again, and on again after an interruption
   nusselt radiosity hall.obj --patch 0.2 --until 1e-4 --state hall.state -o hall.ply
   nusselt radiosity hall.obj --patch 0.2 --until 1e-4 --state hall.state --resume -o hall.ply";
 
@@ -90,7 +90,7 @@ pub(crate) struct Radiosity {
 /// What is kept of a solution.
 #[derive(clap::Args)]
 struct Keep {
-    /// Keep the solution in this file every ten seconds and in the end; with --full, until it is solved, rows of form factors too, beside it
+    /// Keep the solution in this file in the end, and before that whenever a batch of rows is done that takes it past another ten seconds; with --full, until it is solved, rows of form factors too, beside it
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// Go on from the file of --state, if it is there
