@@ -64,6 +64,29 @@ fn polygons_without_area_are_neither_lit_nor_dark() {
 }
 
 #[test]
+fn areas_are_right_or_refused_however_large_or_small() {
+    let folder = Folder::new("shadows-size");
+    let triangle =
+        |name: &str, size: &str| folder.write(name, format!("v 0 0 0\nv {size} 0 0\nv 0 {size} 0\nf 1 2 3\n"));
+    triangle("large.obj", "1e150");
+    triangle("small.obj", "1e-150");
+    for (name, area) in [("large.obj", 5e299), ("small.obj", 5e-301)] {
+        let summary = folder.parsed(&format!("shadows {name} --light 1,1,1 --json"));
+        // A product of two numbers that are rounded, and of powers of two.
+        assert!((number(&summary["total"]["lit"]) / area - 1.0).abs() < 1e-15, "{summary}");
+    }
+    // One that numbers do not hold, and two whose sum they do not.
+    triangle("huge.obj", "1e200");
+    let half = "v 0 0 0\nv 1.8e154 0 0\nv 0 1.8e154 0\nv 0 0 9\nv 1.8e154 0 9\nv 0 1.8e154 9\n";
+    folder.write("two.obj", format!("{half}f 1 2 3\nf 4 5 6\n"));
+    for (name, polygon) in [("huge.obj", 0), ("two.obj", 1)] {
+        let error = folder.run(&format!("shadows {name} --light 1,1,1 --json -o x.obj"), 1);
+        assert!(error.contains(&format!("{name}: polygon {polygon}: its area")), "{error}");
+        assert!(error.trim_end().ends_with("use a larger unit of length") && !folder.path("x.obj").exists(), "{error}");
+    }
+}
+
+#[test]
 fn what_is_wrong_is_said_in_one_line() {
     let folder = Folder::new("shadows-wrong");
     for (line, code, what) in [

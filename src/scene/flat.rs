@@ -41,7 +41,7 @@ pub(super) fn axes_by_size(normal: DVec3) -> [Axis; 3] {
 
 /// The power of two that brings the largest of some coordinates near 1, for estimates that neither
 /// overflow nor vanish.
-pub(super) fn unit_scale(points: impl IntoIterator<Item = DVec3>) -> f64 {
+pub(crate) fn unit_scale(points: impl IntoIterator<Item = DVec3>) -> f64 {
     let largest = points.into_iter().fold(0.0, |size: f64, p| size.max(p.abs().max_element()));
     if largest == 0.0 {
         return 1.0;

@@ -34,6 +34,7 @@ pub use report::{
 };
 pub use splitter::Splitter;
 
+pub(crate) use flat::unit_scale;
 pub(crate) use moved::Carried;
 
 use glam::DVec3;

@@ -69,22 +69,38 @@ impl ShadowsOf {
         let shadows = bvh.shadows(self.light, &ViewOptions::default());
         let shadows = shadows.map_err(|error| Failure::about(&self.scene, &error))?;
         let timing = Timing::new(load_s, order_s, &[start.elapsed().as_secs_f64() * 1e3]);
+        let areas = self.areas(&shadows)?;
         for output in &self.output {
             match output {
                 Output::Obj(path) => write_obj(path, &shadow_groups(&shadows), &scene)?,
                 Output::Glb(path) => write_file(path, |out| gltf::write_glb(out, &shadow_meshes(&shadows)))?,
             }
         }
-        self.tell(common, &shadows, timing)
+        self.tell(common, &shadows, &areas, timing)
     }
 
-    fn tell(&self, common: &Common, shadows: &Shadows, timing: Timing) -> Result<(), Failure> {
+    /// The areas of all polygons, lit and in shadow, if numbers hold them and their sum.
+    fn areas(&self, shadows: &Shadows) -> Result<Vec<[f64; 2]>, Failure> {
         let areas = shadows.areas();
+        let sums = areas.iter().scan(0.0, |sum, [lit, dark]| {
+            *sum += lit + dark;
+            Some(*sum)
+        });
+        match sums.enumerate().find(|(_, sum)| !sum.is_finite()) {
+            Some((polygon, _)) => {
+                let what = "its area, or that of all up to it, is more than numbers hold; use a larger unit of length";
+                Err(Failure::about(&self.scene, &format!("polygon {polygon}: {what}")))
+            }
+            None => Ok(areas),
+        }
+    }
+
+    fn tell(&self, common: &Common, shadows: &Shadows, areas: &[[f64; 2]], timing: Timing) -> Result<(), Failure> {
         let [lit, dark] = areas.iter().fold([0.0; 2], |[lit, dark], [l, d]| [lit + l, dark + d]);
         if common.json {
             return print_json(&json!({
                 "schema": "nusselt.shadows/1", "light": self.light.to_array(), "parts": shadows.parts().len(),
-                "vertices": shadows.vertices().len(), "polygons": rows(shadows.scene(), &areas),
+                "vertices": shadows.vertices().len(), "polygons": rows(shadows.scene(), areas),
                 "total": { "lit": lit, "shadow": dark }, "timing": timing,
             }));
         }

@@ -10,7 +10,7 @@ mod weave;
 
 use crate::bvh::SceneBvh;
 use crate::contour::{Domain, ViewError, ViewOptions, ViewSpace, Viewpoint};
-use crate::scene::{PieceId, PolygonId, Scene};
+use crate::scene::{PieceId, PolygonId, Scene, unit_scale};
 use glam::DVec3;
 
 /// The polygons of a scene in parts that a point light reaches, and parts that it does not. See [`SceneBvh::shadows`].
@@ -96,7 +96,7 @@ impl Shadows {
     }
 
     /// For every polygon the area that is lit and the area that is not, in the square of the scene's unit, by the rounded corners: they
-    /// add up to the area of the polygon but for rounding.
+    /// add up to the area of the polygon but for rounding. Infinite where numbers do not hold an area.
     pub fn areas(&self) -> Vec<[f64; 2]> {
         let mut areas = vec![[0.0; 2]; self.scene.polygon_count()];
         for part in self.parts() {
@@ -134,13 +134,16 @@ impl<'a> ShadowPart<'a> {
         &corners[self.part().start as usize..end]
     }
 
-    /// Its area in the square of the scene's unit, never below 0.
+    /// Its area in the square of the scene's unit, never below 0; infinite where numbers do not hold it, with sides above 1e154.
     pub fn area(self) -> f64 {
-        let at = |corner: u32| self.shadows.vertices[corner as usize];
         let corners = self.corners();
+        let rounded = |corner: u32| self.shadows.vertices[corner as usize];
+        // A power of two, so that products neither overflow nor vanish before the area does.
+        let scale = unit_scale(corners.iter().map(|&corner| rounded(corner)));
+        let at = |corner: u32| rounded(corner) * scale;
         let first = at(corners[0]);
         let doubled: DVec3 =
             corners[1..].windows(2).map(|pair| (at(pair[0]) - first).cross(at(pair[1]) - at(pair[0]))).sum();
-        doubled.length() / 2.0
+        doubled.length() / 2.0 / scale / scale
     }
 }
