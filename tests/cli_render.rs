@@ -326,3 +326,26 @@ fn a_studio_is_as_it_was_and_as_rays_show_it() {
         assert!(many < 0.25 * few * 1.2 + 0.33, "{name}: {few} {many}");
     }
 }
+
+#[test]
+fn scenes_whose_areas_numbers_do_not_hold_are_lit_or_refused_for_what_is_wrong() {
+    let folder = Folder::new("render-huge");
+    folder.write("big.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKe 1 1 1\n");
+    let big = "mtllib big.mtl\nusemtl grey\nv 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n";
+    folder.write("big.obj", big);
+    let camera = "--eye 2,2,3 --look-at 3,3,0 --size 4x4";
+    // Nothing emits, so that there is no power; a light without extent is straight.
+    for direct in ["", " --direct"] {
+        folder.run(
+            &format!("render big.obj {camera} --point-light 1,1,1:1 --exposure 1{direct} -o a{}.png", direct.len()),
+            0,
+        );
+    }
+    assert!(same(&folder, "a0.png", "a9.png"));
+    let (_, found) = png(&folder.path("a0.png"));
+    assert!(found.iter().any(|&byte| byte > 0));
+    // The floor would have to be solved for: it is not the lamp that is wrong.
+    folder.write("lamp.obj", format!("{big}v 0 0 9\nv 1 0 9\nv 0 1 9\nusemtl lamp\nf 4 6 5\n"));
+    let error = folder.run(&format!("render lamp.obj {camera} -o b.png"), 1);
+    assert!(error.contains("polygon 0: its area is more than numbers hold; use a larger unit of length"), "{error}");
+}

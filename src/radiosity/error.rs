@@ -30,6 +30,12 @@ pub enum RadiosityError {
         /// The polygon with which it is too much.
         polygon: PolygonId,
     },
+    /// Numbers do not hold the area of a patch, so that they do not hold its power.
+    #[error("polygon {polygon}: its area is more than numbers hold; use a larger unit of length")]
+    TooLarge {
+        /// The first such polygon.
+        polygon: PolygonId,
+    },
     /// What surfaces reflect in a closed scene is not less than what they get: it would never end.
     #[error("nothing is absorbed after {shots} shots; some surface has to reflect less than 1")]
     Endless {

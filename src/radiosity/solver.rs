@@ -89,7 +89,7 @@ impl<'a> Solver<'a> {
     ///
     /// # Errors
     /// If a material has no reflectance ([`Material::reflectances`](crate::scene::Material::reflectances)), if nothing emits, or if
-    /// numbers do not hold the power that is emitted.
+    /// numbers do not hold the power that is emitted, or the area of a patch.
     pub fn new(scene: &Scene, exchange: &'a Exchange, options: SolverOptions) -> Result<Self, RadiosityError> {
         let (emission, reflectance) = surfaces(scene, exchange)?;
         let state = SolverState { radiosity: emission.clone(), unshot: emission.clone(), ..SolverState::default() };
@@ -334,12 +334,17 @@ impl<'a> Solver<'a> {
 /// Powers are added up, and multiplied by what anticipates reflections: so many times their sum has to be a number.
 const ROOM: f64 = 1e6;
 
-/// Checks that something emits, and that numbers hold all of it.
+/// Checks that something emits, and that numbers hold all of it, and the areas that it arrives at.
 fn check_power(patches: &[PatchInfo], emission: &[DVec3]) -> Result<(), RadiosityError> {
+    if emission.iter().all(|&emission| strength(emission) == 0.0) {
+        return Err(RadiosityError::Dark);
+    }
+    if let Some(&PatchInfo { polygon, .. }) = patches.iter().find(|patch| !patch.area.is_finite()) {
+        return Err(RadiosityError::TooLarge { polygon });
+    }
     let mut sum = 0.0;
     for (&PatchInfo { polygon, area, .. }, &emission) in patches.iter().zip(emission) {
         sum += strength(emission) * area;
-        // An area may be infinite, too.
         if !(ROOM * strength(emission)).is_finite() || !(ROOM * sum).is_finite() {
             return Err(RadiosityError::TooBright { polygon });
         }
