@@ -333,7 +333,7 @@ fn scenes_whose_areas_numbers_do_not_hold_are_lit_or_refused_for_what_is_wrong()
     folder.write("big.mtl", "newmtl grey\nKd 0.5 0.5 0.5\nnewmtl lamp\nKe 1 1 1\n");
     let big = "mtllib big.mtl\nusemtl grey\nv 0 0 0\nv 1e200 0 0\nv 0 1e200 0\nf 1 2 3\n";
     folder.write("big.obj", big);
-    let camera = "--eye 2,2,3 --look-at 3,3,0 --size 4x4";
+    let camera = "--eye 2,2,3 --look-at 3,3,0 --fov 60 --size 4x4";
     // Nothing emits, so that there is no power; a light without extent is straight.
     for direct in ["", " --direct"] {
         folder.run(
