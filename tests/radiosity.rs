@@ -388,6 +388,41 @@ fn overshooting_comes_to_the_same_solution() {
     }
 }
 
+/// The form factor between equal parallel rectangles opposite each other, with sides x and y times their distance.
+fn between_rectangles(x: f64, y: f64) -> f64 {
+    let (u, v) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
+    2.0 / (PI * x * y)
+        * ((u * v / (1.0 + x * x + y * y).sqrt()).ln() + x * v * (x / v).atan() + y * u * (y / u).atan()
+            - x * x.atan()
+            - y * y.atan())
+}
+
+/// A lamp over a sheet of the same size that shows it its back, or its front.
+#[test]
+fn power_that_backs_get_and_power_that_leaves_are_told_apart() {
+    let square = |z: f64| [[0.0, 0.0, z], [2.0, 0.0, z], [2.0, 3.0, z], [0.0, 3.0, z]];
+    let (up, down) = (vec![vec![0, 1, 2, 3]], vec![vec![3, 2, 1, 0]]);
+    for (sheet, is_back) in [(&down, true), (&up, false)] {
+        let scene = Scene::builder()
+            .mesh(&square(0.0), sheet, material(0.0, 0.0))
+            .mesh(&square(1.5), &down, material(0.0, 1.0))
+            .build()
+            .expect("a scene");
+        let exchange = exchange(&scene, 1e-9);
+        let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+        solver.solve(1e-12, |_| true).expect("solved");
+        let factor = between_rectangles(2.0 / 1.5, 3.0 / 1.5);
+        let power = 6.0 * PI;
+        let (arrives, leaves) = (power * factor, power * (1.0 - factor));
+        let (absorbed, backs) = if is_back { (0.0, arrives) } else { (arrives, 0.0) };
+        let balance = solver.balance();
+        // Factors are right to 1e-9.
+        for (found, expected) in [(balance.absorbed, absorbed), (balance.backs, backs), (balance.background, leaves)] {
+            assert!((found - expected).abs().max_element() < 1e-9 * power, "{is_back}: {balance:?} {expected}");
+        }
+    }
+}
+
 #[test]
 fn a_lid_over_black_walls_lights_them_by_its_factors() {
     let scene = hollow(material(0.0, 0.0), material(0.0, 1.0));
@@ -401,12 +436,7 @@ fn a_lid_over_black_walls_lights_them_by_its_factors() {
     let exchange = self::exchange(&grey, 1e-9);
     let mut solver = Solver::new(&grey, &exchange, SolverOptions::default()).expect("a solver");
     solver.shoot().expect("shot");
-    let (x, y) = (2.0_f64 / 1.5, 3.0_f64 / 1.5);
-    let (u, v) = ((1.0 + x * x).sqrt(), (1.0 + y * y).sqrt());
-    let factor = 2.0 / (PI * x * y)
-        * ((u * v / (1.0 + x * x + y * y).sqrt()).ln() + x * v * (x / v).atan() + y * u * (y / u).atan()
-            - x * x.atan()
-            - y * y.atan());
+    let factor = between_rectangles(2.0 / 1.5, 3.0 / 1.5);
     assert!((solver.radiosity()[0].x - 0.5 * PI * factor).abs() < 1e-8, "{} {factor}", solver.radiosity()[0].x);
 }
 
