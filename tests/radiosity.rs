@@ -480,6 +480,16 @@ fn what_cannot_be_solved_is_refused() {
         let refused = made(material(0.5, 0.0), material(0.5, bright));
         assert!(matches!(refused, Err(RadiosityError::TooBright { polygon: PolygonId(5) })), "{bright:e}: {refused:?}");
     }
+    // Of a floor of infinite area, whatever emits.
+    let corners = [[0.0, 0.0, 0.0], [1e200, 0.0, 0.0], [0.0, 1e200, 0.0], [0.0, 0.0, 1.0]];
+    for (emission, is_dark) in [(0.0, true), (1.0, false)] {
+        let builder = Scene::builder().mesh(&corners, &[vec![0, 1, 2]], material(0.5, 0.0));
+        let scene = builder.mesh(&corners, &[vec![1, 2, 3]], material(0.5, emission)).build().expect("a scene");
+        let exchange = exchange(&scene, 1e-3);
+        let refused = Solver::new(&scene, &exchange, SolverOptions::default()).err();
+        let expected = if is_dark { RadiosityError::Dark } else { RadiosityError::TooLarge { polygon: PolygonId(0) } };
+        assert_eq!(refused, Some(expected));
+    }
     let all = made(material(0.5, 1e299), material(0.5, 1e299));
     assert_eq!(all, Ok(6), "numbers hold that");
     let scene = hollow(material(1.0, 0.0), material(1.0, 1.0));
