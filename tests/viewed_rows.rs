@@ -81,7 +81,15 @@ fn a_furnace_is_even_to_rounding() {
     let scene = hollow(0.7, 2.0);
     let mesh = PatchMesh::new(&scene, 0.7).expect("a mesh");
     let exchange = exchange(&mesh, 1e-3);
-    let found = Gathered::new(&scene, &exchange, &viewed(&exchange, 0.4), 1e-14).expect("radiosities");
+    let (rows, mut left) = (viewed(&exchange, 0.4), Vec::new());
+    let found = Gathered::watched(&scene, &exchange, &rows, 1e-14, |part| left.push(part)).expect("radiosities");
+    // Each bounce takes 0.3 of what there is: 91 of them, as 0.7^90 > 1e-14 > 0.7^91.
+    assert_eq!((found.bounces, left.len()), (91, 91));
+    for (k, part) in left.iter().enumerate() {
+        let expected = 0.7_f64.powi(k as i32 + 1);
+        // Sums of some hundred factors, so many times.
+        assert!((part / expected - 1.0).abs() < 1e-11, "{k}: {part} {expected}");
+    }
     for radiosity in found.radiosity {
         assert!((radiosity - PI * 2.0 / 0.3).abs().max_element() < 1e-10, "{radiosity}");
     }

@@ -33,6 +33,24 @@ impl Gathered {
     /// # Panics
     /// If there are not as many rows as patches.
     pub fn new(scene: &Scene, exchange: &Exchange, rows: &ViewedRows, until: f64) -> Result<Self, RadiosityError> {
+        Self::watched(scene, exchange, rows, until, |_| ())
+    }
+
+    /// The same; after every bounce `watch` is told what part of the power that is emitted is still to be sent. Where surfaces reflect nearly all that they get, there are very many:
+    /// in a closed room of reflectance rho about ln(until) / ln(rho).
+    ///
+    /// # Errors
+    /// As [`Gathered::new`].
+    ///
+    /// # Panics
+    /// As [`Gathered::new`].
+    pub fn watched(
+        scene: &Scene,
+        exchange: &Exchange,
+        rows: &ViewedRows,
+        until: f64,
+        mut watch: impl FnMut(f64),
+    ) -> Result<Self, RadiosityError> {
         let (emission, reflectance) = surfaces(scene, exchange)?;
         assert_eq!(rows.len(), emission.len(), "a row for every patch");
         let areas: Vec<f64> = exchange.patches().iter().map(|patch| patch.area).collect();
@@ -51,6 +69,7 @@ impl Gathered {
             radiosity.iter_mut().zip(&sent).for_each(|(sum, &b)| *sum += b);
             left = power(&sent);
             bounces += 1;
+            watch(left / emitted);
             if bounces % PATIENCE == 0 {
                 if left > checked * (1.0 - 1e-9) {
                     return Err(RadiosityError::Endless { shots: bounces * sent.len() });

@@ -135,7 +135,14 @@ impl Interreflection {
         Solver::new(scene, exchange, SolverOptions::default())?;
         let progress = SharedProgress::new("rows", Some(exchange.patches().len()), common.quiet);
         let rows = exchange.viewed_rows(0.5 * longest, MOST_FACTORS, &|count| progress.add(count))?;
-        let Gathered { emission, radiosity, bounces } = Gathered::new(scene, exchange, &rows, self.until)?;
+        drop(progress);
+        // Of surfaces that reflect nearly everything there may be a million.
+        let mut progress = Progress::new("bounces", None, common.quiet);
+        let Gathered { emission, radiosity, bounces } =
+            Gathered::watched(scene, exchange, &rows, self.until, |left| {
+                progress.note(format!("{left:.2e} unshot"));
+                progress.add(1);
+            })?;
         Ok(Solution { emission, radiosity, shots: 0, bounces })
     }
 
