@@ -90,7 +90,7 @@ pub(crate) struct Radiosity {
 /// What is kept of a solution.
 #[derive(clap::Args)]
 struct Keep {
-    /// Keep the solution in this file in the end, and before that whenever a batch of rows is done that takes it past another ten seconds; with --full, until it is solved, rows of form factors too, beside it
+    /// Keep the solution in this file in the end, and before that after each batch of rows that is done more than ten seconds after the last time; with --full, until it is solved, rows of form factors too, beside it
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// Go on from the file of --state, if it is there
