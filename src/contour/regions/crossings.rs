@@ -5,6 +5,7 @@ use super::outlines::{Outlines, Run};
 use crate::bsp::LineId;
 use crate::contour::directions::CircleId;
 use crate::contour::image::ContourImage;
+use crate::scene::PieceRef;
 
 /// True if the planes of what is seen to both sides of a run meet where it is, and no edge of that is there: the great circle may have come by another name.
 pub(super) fn is_crossing(image: &ContourImage, outlines: &mut Outlines<'_>, run: Run, circle: CircleId) -> bool {
@@ -16,12 +17,12 @@ pub(super) fn is_crossing(image: &ContourImage, outlines: &mut Outlines<'_>, run
     }) else {
         return false;
     };
-    let mut planes = [a, b].map(|piece| piece.plane_id());
+    let mut planes = [a, b].map(PieceRef::plane_id);
     planes.sort_unstable();
     if planes[0] == planes[1] {
         return false;
     }
-    let edges = [a, b].into_iter().flat_map(|piece| piece.edges());
+    let edges = [a, b].into_iter().flat_map(PieceRef::edges);
     let lines: Vec<LineId> = edges.map(|edge| skeleton.representative(LineId(edge.0)).0).collect();
     let Mosaic { directions, knife, .. } = &mut outlines.mosaic;
     if directions.line(circle).is_some_and(|line| lines.contains(&line)) {
