@@ -2,7 +2,7 @@
 //! it or through it.
 
 use glam::{DMat3, DVec3};
-use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan};
+use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, Row};
 use nusselt::scene::{Material, Scene, SceneBuilder};
 use std::f64::consts::PI;
 
@@ -99,4 +99,68 @@ fn faces_of_a_thin_wall_are_not_face_to_face() {
     assert!(between.factors[12][13].abs().max(between.factors[13][12].abs()) <= 0.0);
     // One of them sees the narrow part of the room, the other one the block.
     assert!(between.factors[12][5] > 0.3 && between.factors[13][4] > 0.05 && between.factors[13][11] > 0.01);
+}
+
+fn factor(row: &Row, column: u32) -> f64 {
+    row.entries.iter().find(|entry| entry.column == column).map_or(0.0, |entry| entry.share.factor)
+}
+
+/// Boxes as a room has its block, by corners.
+fn with_boxes(boxes: &[[[f64; 3]; 2]], turn: DMat3) -> SceneBuilder {
+    let inside = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let outside = inside.map(|face| face.into_iter().rev().collect());
+    boxes.iter().fold(room(turn), |builder, [low, high]| {
+        let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
+        let corners: Vec<[f64; 3]> = (0..8).map(corner).map(|p| (turn * DVec3::from(p)).to_array()).collect();
+        builder.mesh(&corners, &outside, grey())
+    })
+}
+
+/// A block on a block whose top is in two parts: where they are rounded, these are no one facet, and cover the bottom of the upper one together only.
+#[test]
+fn a_bottom_astride_two_tops_is_shut() {
+    let corners = [
+        [2.5, 1.0, 0.0],
+        [3.5, 1.0, 0.0],
+        [3.5, 2.0, 0.0],
+        [2.5, 2.0, 0.0],
+        [2.5, 1.0, 1.0],
+        [3.5, 1.0, 1.0],
+        [3.5, 2.0, 1.0],
+        [2.5, 2.0, 1.0],
+        [3.1, 1.0, 1.0],
+        [3.1, 2.0, 1.0],
+    ];
+    let faces = [[3, 2, 1, 0], [4, 8, 9, 7], [8, 5, 6, 9], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+    for turn in [DMat3::IDENTITY, DMat3::from_rotation_x(0.7) * DMat3::from_rotation_z(0.3)] {
+        let corners = corners.map(|p| (turn * DVec3::from(p)).to_array());
+        let builder = with_boxes(&[[[2.75, 1.25, 1.0], [3.25, 1.75, 1.5]]], turn);
+        let scene = built(builder.mesh(&corners, &faces.map(|face| face.to_vec()), grey()));
+        let options = ExchangeOptions { tolerance: TOLERANCE, ..ExchangeOptions::default() };
+        let exchange = Exchange::new(&scene, PatchPlan::Polygons, options).expect("patches");
+        // The upper block's bottom is polygon 12, the lower one's 18, and the tops 19 and 20, of which 0.175 and 0.075 square units are below the upper one.
+        for (from, to, expected) in [
+            (0, 18, 1.0 / 12.0),
+            (0, 12, 0.0),
+            (19, 12, 0.175 / 0.6),
+            (20, 12, 0.075 / 0.4),
+            (12, 19, 0.7),
+            (12, 20, 0.3),
+        ] {
+            let row = exchange.row(from).expect("a row that closes");
+            let found = factor(&row, to);
+            assert!((found - expected).abs() < 1e-6, "{from} to {to}: {found} instead of {expected}");
+            assert!(row.backs.factor < 1e-6 && (row.sum() - 1.0).abs() < 1e-12, "{row:?}");
+        }
+    }
+}
+
+/// The same block twice: the first bottom gets what leaves the floor below, and the row closes.
+#[test]
+fn what_is_below_two_bottoms_is_shut_once() {
+    let scene = built(with_boxes(&[[[1.0, 1.0, 0.0], [2.0, 2.0, 1.0]]], DMat3::IDENTITY));
+    let options = ExchangeOptions { tolerance: TOLERANCE, most_views: 3000, ..ExchangeOptions::default() };
+    let row = Exchange::new(&scene, PatchPlan::Polygons, options).expect("patches").row(0).expect("a row that closes");
+    assert!((factor(&row, 6) - 1.0 / 12.0).abs() < 1e-6 && factor(&row, 12).abs() < 1e-6, "{row:?}");
+    assert!((row.sum() - 1.0).abs() < 1e-12);
 }

@@ -1,14 +1,17 @@
 //! What an element exchanges with those that it sees wholly, or partly with all known that is between.
 
 use super::blockers::{Blockers, Hiders, Seen};
+use super::contacts::take_out;
 use super::element::Element;
 use super::element_row::{Effort, ElementRows, from_one};
 use super::partly::{Partly, PartlySpace};
 use super::row::Share;
 use super::row_space::{Found, RowSpace};
+use super::seen::LookSpace;
 use super::shaft::Lies;
 use super::shape::clip;
 use super::shared::Told;
+use super::touching::strip;
 use super::{Sides, contour, pair};
 use glam::DVec3;
 use std::ops::Range;
@@ -54,7 +57,7 @@ impl ElementRows<'_> {
     /// The larger one would take fewer points, but a small element that is seen from a small part of a large one may be missed by all of them.
     fn over_the_smaller(&self, number: u32, other: u32, allowed: f64, space: &mut RowSpace) -> Share {
         let [own, its] = [number, other].map(|k| &self.blockers.elements.all[k as usize]);
-        let RowSpace { found, parts, hidden, cuts, .. } = space;
+        let RowSpace { found, parts, hidden, cuts, look, .. } = space;
         let Range { start, end } = found.between[other as usize];
         let between = &found.facets[start as usize..end as usize];
         found.seen[other as usize] = Seen::Integrated;
@@ -63,9 +66,22 @@ impl ElementRows<'_> {
             cuts.append(&mut hidden.cuts);
             (own, share)
         } else {
-            (its, self.partly(its, &self.blockers.parts(its), own, between, allowed, hidden))
+            (its, self.partly(its, &self.open_parts(other, look), own, between, allowed, hidden))
         };
         Share { factor: smaller.area * share.factor.max(0.0), error: smaller.area * share.error }
+    }
+
+    /// The parts of an element without what is face to face with others. (Its own row tells if a view for that fails.)
+    fn open_parts(&self, number: u32, look: &mut LookSpace) -> Vec<Vec<DVec3>> {
+        let element = &self.blockers.elements.all[number as usize];
+        let mut parts = self.blockers.parts(element);
+        if !self.touching[element.facet as usize].is_empty() {
+            let frame = &self.blockers.elements.frames[element.facet as usize];
+            for touch in self.touching(number, look).unwrap_or_default() {
+                take_out(&mut parts, frame, &touch.ring, strip(element));
+            }
+        }
+        parts
     }
 
     /// The form factor to another element by points on this one, whatever their sizes and however well it is seen: for a check of what rows have. `None` if views
@@ -81,6 +97,7 @@ impl ElementRows<'_> {
             return Some(from_one(touch.exchange, from));
         }
         self.stand_on(from, space);
+        space.parts = self.open_parts(number, &mut space.look);
         let RowSpace { around: Some(around), parts, hidden, .. } = space else { return None };
         let mut found = None;
         if self.is_in_front(around, to.facet) {

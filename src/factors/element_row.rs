@@ -9,6 +9,7 @@ use super::row::Share;
 use super::row_space::{Found, RowSpace};
 use super::seen::Looker;
 use super::shaft::Lies;
+use super::shape::double_area;
 use super::shared::{Shared, Told};
 use super::touching::{Touch, strip};
 use super::{ExchangeError, Sides};
@@ -151,17 +152,23 @@ impl ElementRows<'_> {
         }
     }
 
-    /// Takes out what is face to face with others, which get what leaves it.
+    /// Takes out what is face to face with others, which get what leaves it; where several are, the first of them does.
     fn touch(&self, number: u32, space: &mut RowSpace) -> Result<(), ExchangeError> {
         let elements = self.blockers.elements;
         let from = &elements.all[number as usize];
         let frame = &elements.frames[from.facet as usize];
         for Touch { other, exchange, ring } in self.touching(number, &mut space.look)? {
+            let before = area(&space.parts);
             take_out(&mut space.parts, frame, &ring, strip(from));
+            let taken = before - area(&space.parts);
+            let is_all = exchange.factor <= taken + strip(from);
+            let exchange = if is_all { exchange } else { Share { factor: taken, ..exchange } };
             if !std::mem::replace(&mut space.found.is_told[other as usize], true) {
                 space.complete.push(other);
                 space.found.seen[other as usize] = Seen::Integrated;
-                space.told.push((other, Told::Exchange(exchange)));
+                if is_all {
+                    space.told.push((other, Told::Exchange(exchange)));
+                }
                 space.add(elements.all[other as usize].patch, from_one(exchange, from));
             }
         }
@@ -230,6 +237,11 @@ impl ElementRows<'_> {
             }
         }
     }
+}
+
+/// The area of convex parts.
+fn area(parts: &[Vec<DVec3>]) -> f64 {
+    parts.iter().map(|part| 0.5 * double_area(part).length()).sum()
 }
 
 /// The share of what leaves an element that an exchange is.

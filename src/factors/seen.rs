@@ -1,6 +1,6 @@
 //! What is seen from one point of an element, by patches.
 
-use super::contacts::TOUCHES;
+use super::contacts::{TOUCHES, take_out};
 use super::element::Elements;
 use super::facets::Facets;
 use super::shape::{Frame, clip, sides, turn};
@@ -146,7 +146,7 @@ impl Looker<'_> {
                     // In one plane fronts win over the backs of what they stand on.
                     touching.contains(&facet) || {
                         flatten(cell, viewpoint.eye(), &self.elements.frames[seen.index()], flat);
-                        touching.iter().any(|&other| self.covers(other, seen.0, flat))
+                        self.cover(touching, seen.0, flat)
                     }
                 }
                 (seen, _) => seen.is_some(),
@@ -158,11 +158,16 @@ impl Looker<'_> {
         Ok(open <= SHUT)
     }
 
-    /// True if a facet that is face to face with another one covers all of a part of it.
-    fn covers(&self, facet: u32, other: u32, part: &[DVec2]) -> bool {
+    /// True if facets that are face to face with another one cover all of a part of it together.
+    fn cover(&self, facets: &[u32], other: u32, part: &[DVec2]) -> bool {
         let frame = &self.elements.frames[other as usize];
-        let ring: Vec<DVec2> = self.facets.all[facet as usize].ring.iter().rev().map(|&p| frame.flat(p)).collect();
-        part.len() >= 3 && sides(&ring).all(|[a, b]| part.iter().all(|&p| turn(a, b, p) >= -TOUCHES * a.distance(b)))
+        let [low, high] = self.facets.all[other as usize].bounds;
+        let mut left = vec![part.iter().map(|&p| frame.lift(p)).collect()];
+        for &facet in facets {
+            let ring: Vec<DVec2> = self.facets.all[facet as usize].ring.iter().rev().map(|&p| frame.flat(p)).collect();
+            take_out(&mut left, frame, &ring, low.distance(high) * TOUCHES);
+        }
+        part.len() >= 3 && left.is_empty()
     }
 
     /// What is seen from the point of a facet's front nearest to `point`.
