@@ -2,7 +2,7 @@
 //! it or through it.
 
 use glam::{DMat3, DVec3};
-use nusselt::factors::{Exchange, ExchangeOptions, PatchPlan, Row};
+use nusselt::factors::{Exchange, ExchangeError, ExchangeOptions, PatchPlan, Row};
 use nusselt::scene::{Material, Scene, SceneBuilder};
 use std::f64::consts::PI;
 
@@ -163,4 +163,23 @@ fn what_is_below_two_bottoms_is_shut_once() {
     let row = Exchange::new(&scene, PatchPlan::Polygons, options).expect("patches").row(0).expect("a row that closes");
     assert!((factor(&row, 6) - 1.0 / 12.0).abs() < 1e-6 && factor(&row, 12).abs() < 1e-6, "{row:?}");
     assert!((row.sum() - 1.0).abs() < 1e-12);
+}
+
+/// The same, where each of the rows is told by others what they have found: a block, and a plate below it.
+#[test]
+fn rows_that_tell_each_other_close_where_bottoms_lie_on_each_other() {
+    let plate = [[1.2, 1.2, 0.0], [1.2, 1.8, 0.0], [1.8, 1.8, 0.0], [1.8, 1.2, 0.0]];
+    for turn in [DMat3::IDENTITY, DMat3::from_rotation_x(0.7) * DMat3::from_rotation_z(0.3)] {
+        let plate = plate.map(|p| (turn * DVec3::from(p)).to_array());
+        let scene = built(room(turn).mesh(&plate, &[vec![0, 1, 2, 3]], grey()));
+        let options = ExchangeOptions { tolerance: TOLERANCE, ..ExchangeOptions::default() };
+        let exchange = Exchange::new(&scene, PatchPlan::Polygons, options).expect("patches");
+        let mut rows = Vec::new();
+        let closed = exchange.rows(0..exchange.patches().len(), |row| {
+            rows.push(row);
+            Ok::<(), ExchangeError>(())
+        });
+        closed.expect("rows that close");
+        assert!((factor(&rows[0], 6) + factor(&rows[0], 12) - 1.0 / 12.0).abs() < 1e-6, "{:?}", rows[0]);
+    }
 }

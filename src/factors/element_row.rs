@@ -162,13 +162,16 @@ impl ElementRows<'_> {
             take_out(&mut space.parts, frame, &ring, strip(from));
             let taken = before - area(&space.parts);
             let is_all = exchange.factor <= taken + strip(from);
-            let exchange = if is_all { exchange } else { Share { factor: taken, ..exchange } };
+            // The other row has all that it has in common with this one.
+            let (exchange, told) = if is_all {
+                (exchange, Told::Exchange(exchange))
+            } else {
+                (Share { factor: taken, ..exchange }, Told::Unknown)
+            };
             if !std::mem::replace(&mut space.found.is_told[other as usize], true) {
                 space.complete.push(other);
                 space.found.seen[other as usize] = Seen::Integrated;
-                if is_all {
-                    space.told.push((other, Told::Exchange(exchange)));
-                }
+                space.told.push((other, told));
                 space.add(elements.all[other as usize].patch, from_one(exchange, from));
             }
         }
