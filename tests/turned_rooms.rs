@@ -183,3 +183,27 @@ fn rows_that_tell_each_other_close_where_bottoms_lie_on_each_other() {
         assert!((factor(&rows[0], 6) + factor(&rows[0], 12) - 1.0 / 12.0).abs() < 1e-6, "{:?}", rows[0]);
     }
 }
+
+/// Solids that overlap show the room what their union does, and what is within both counts for none: an annex that reaches into a building, against one that ends at its wall;
+/// a box inside of it, against none.
+#[test]
+fn overlapping_solids_exchange_with_a_room_what_their_union_does() {
+    let annex = |from: f64| [[from, 1.25, 0.0], [2.75, 1.75, 0.5]];
+    let hidden = [[1.25, 1.25, 0.0], [1.75, 1.75, 0.5]];
+    for turn in [DMat3::IDENTITY, DMat3::from_rotation_x(0.7) * DMat3::from_rotation_z(0.3)] {
+        let of = |boxes: &[[[f64; 3]; 2]]| Between::of(&built(with_boxes(boxes, turn)), PatchPlan::Polygons);
+        let union = of(&[annex(2.0)]);
+        let alone = of(&[]);
+        for (overlapping, apart) in [(of(&[annex(1.5)]), &union), (of(&[hidden]), &alone)] {
+            // The room, and all that it sees: those of the same place are the same face of each.
+            for (from, to) in (0..6).flat_map(|from| (0..overlapping.factors.len()).map(move |to| (from, to))) {
+                let value = |of: &[Vec<f64>]| of[from].get(to).copied().unwrap_or(0.0);
+                let [a, b] = [value(&overlapping.factors), value(&apart.factors)];
+                let allowed = 2.0 * (value(&overlapping.estimates) + value(&apart.estimates)) + 1e-12;
+                assert!((a - b).abs() <= allowed, "{from} to {to}: {a} {b} {allowed:e}");
+            }
+            // All that leaves the building's bottom arrives at the floor.
+            assert!((overlapping.factors[6][0] - 1.0).abs() < 1e-6, "{:?}", overlapping.factors[6]);
+        }
+    }
+}

@@ -9,7 +9,7 @@ use crate::bvh::Content;
 use crate::contour::SceneOrder;
 use crate::exact::U;
 use crate::scene::Side;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// Where all facets are, seen from one: each to the plane of this one, and this one to the plane of each.
 pub(super) struct Around {
@@ -212,6 +212,12 @@ impl Blockers<'_> {
 
     /// An element in parts between the lines where facets stand on it or pass through it.
     pub(super) fn parts(&self, element: &Element) -> Vec<Vec<DVec3>> {
+        let frame = &self.elements.frames[element.facet as usize];
+        parts(element, frame, &self.contacts(element))
+    }
+
+    /// Where facets stand on an element or pass through it, in its plane; some of the segments may be beside it.
+    pub(super) fn contacts(&self, element: &Element) -> Vec<[DVec2; 2]> {
         // Corners of a mesh are rounded.
         let reach = element.radius * (1e-12 + element.rounding) + TOUCHES;
         let low = element.ring.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)) - reach;
@@ -219,7 +225,7 @@ impl Blockers<'_> {
         let others =
             self.within(|_| true, |other_low, other_high| low.cmple(other_high).all() && high.cmpge(other_low).all());
         let frame = &self.elements.frames[element.facet as usize];
-        parts(element, frame, &contacts(element.facet, self.facets, frame, &others))
+        contacts(element.facet, self.facets, frame, &others)
     }
 
     /// The facets that may block light between an element and a whole facet, ascending.
@@ -255,7 +261,7 @@ impl Blockers<'_> {
     }
 
     /// The facets of those wanted in boxes that may meet something, ascending.
-    fn within(&self, is_wanted: impl Fn(&u32) -> bool, may_meet: impl Fn(DVec3, DVec3) -> bool) -> Vec<u32> {
+    pub(super) fn within(&self, is_wanted: impl Fn(&u32) -> bool, may_meet: impl Fn(DVec3, DVec3) -> bool) -> Vec<u32> {
         let SceneOrder::Boxes(bvh) = &self.facets.order else { unreachable!("views of facets are taken by boxes") };
         let hierarchy = &*bvh.hierarchy;
         let mut stack: Vec<u32> = (0..hierarchy.nodes.len().min(1) as u32).collect();

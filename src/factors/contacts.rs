@@ -48,10 +48,19 @@ pub(super) fn contacts(facet: u32, facets: &Facets, frame: &Frame, others: &[u32
 
 /// The element cut along the lines of segments that lie in it.
 pub(super) fn parts(element: &Element, frame: &Frame, contacts: &[[DVec2; 2]]) -> Vec<Vec<DVec3>> {
-    let mut parts = vec![element.flat.clone()];
+    let parts = cut(&element.flat, element.radius, contacts);
+    if parts.len() == 1 {
+        return vec![element.ring.clone()];
+    }
+    parts.into_iter().map(|part| part.into_iter().map(|p| frame.lift(p)).collect()).collect()
+}
+
+/// A convex polygon cut along the lines of segments that lie in it.
+pub(super) fn cut(ring: &[DVec2], size: f64, contacts: &[[DVec2; 2]]) -> Vec<Vec<DVec2>> {
+    let mut parts = vec![ring.to_vec()];
     let mut cut = Vec::new();
     for &[p, q] in contacts {
-        if !crosses(&element.flat, [p, q], element.radius) || parts.len() > MOST_PARTS {
+        if !crosses(ring, [p, q], size) || parts.len() > MOST_PARTS {
             continue;
         }
         // Lines, and not segments: parts stay convex.
@@ -67,10 +76,7 @@ pub(super) fn parts(element: &Element, frame: &Frame, contacts: &[[DVec2; 2]]) -
         }
         parts = next;
     }
-    if parts.len() == 1 {
-        return vec![element.ring.clone()];
-    }
-    parts.into_iter().map(|part| part.into_iter().map(|p| frame.lift(p)).collect()).collect()
+    parts
 }
 
 /// Takes what a convex ring covers out of convex parts; what is left of them is convex, too. Areas up to `least` are nothing.

@@ -1,7 +1,6 @@
 //! What an element exchanges with those that it sees wholly, or partly with all known that is between.
 
 use super::blockers::{Blockers, Hiders, Seen};
-use super::contacts::take_out;
 use super::element::Element;
 use super::element_row::{Effort, ElementRows, from_one};
 use super::partly::{Partly, PartlySpace};
@@ -11,7 +10,6 @@ use super::seen::LookSpace;
 use super::shaft::Lies;
 use super::shape::clip;
 use super::shared::Told;
-use super::touching::strip;
 use super::{Sides, contour, pair};
 use glam::DVec3;
 use std::ops::Range;
@@ -78,7 +76,7 @@ impl ElementRows<'_> {
         if !self.touching[element.facet as usize].is_empty() {
             let frame = &self.blockers.elements.frames[element.facet as usize];
             for touch in self.touching(number, look).unwrap_or_default() {
-                take_out(&mut parts, frame, &touch.ring, strip(element));
+                touch.take_out(&mut parts, element, frame);
             }
         }
         parts
@@ -92,6 +90,9 @@ impl ElementRows<'_> {
         }
         let elements = self.blockers.elements;
         let [from, to] = [number, other].map(|k| &elements.all[k as usize]);
+        if self.looker.shut.is_between(from.facet, to.facet) {
+            return None;
+        }
         let touches = self.touching(number, &mut space.look).ok()?;
         if let Some(touch) = touches.iter().find(|touch| touch.other == other) {
             return Some(from_one(touch.exchange, from));

@@ -1,7 +1,6 @@
 //! Where what leaves one element goes.
 
 use super::blockers::{Around, Blockers, Seen};
-use super::contacts::take_out;
 use super::cubature::{Add, Cubature, Division};
 use super::element::Element;
 use super::pieces::pieces;
@@ -157,9 +156,10 @@ impl ElementRows<'_> {
         let elements = self.blockers.elements;
         let from = &elements.all[number as usize];
         let frame = &elements.frames[from.facet as usize];
-        for Touch { other, exchange, ring } in self.touching(number, &mut space.look)? {
+        for touch in self.touching(number, &mut space.look)? {
+            let Touch { other, exchange, .. } = touch;
             let before = area(&space.parts);
-            take_out(&mut space.parts, frame, &ring, strip(from));
+            touch.take_out(&mut space.parts, from, frame);
             let taken = before - area(&space.parts);
             let is_all = exchange.factor <= taken + strip(from);
             // The other row has all that it has in common with this one.
@@ -220,7 +220,8 @@ impl ElementRows<'_> {
         let from = &elements.all[number as usize];
         space.hiders.clear();
         for facet in self.in_front(space) {
-            let RowSpace { around: Some(around), found, hiders, .. } = &mut *space else { return };
+            let is_unknown = self.looker.shut.is_between(from.facet, facet);
+            let RowSpace { around: Some(around), found, hiders, told, .. } = &mut *space else { return };
             let Found { seen: how, known, between: places, facets, is_told } = found;
             let is_told = |element: u32| is_told[element as usize];
             self.blockers.classify(around, from, facet, hiders, is_told, |element, seen, between| {
@@ -228,6 +229,10 @@ impl ElementRows<'_> {
                 facets.extend(between);
                 places[element as usize] = first..facets.len() as u32;
                 how[element as usize] = seen;
+                if is_unknown && seen != Seen::Never {
+                    how[element as usize] = Seen::Unknown;
+                    told.push((element, Told::Unknown));
+                }
                 known.push(element);
             });
         }

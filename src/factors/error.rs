@@ -66,7 +66,7 @@ pub enum ExchangeError {
     },
     /// What a row lacks is more than the estimates of its errors.
     #[error(
-        "row {patch} sums to 1 only up to {residue:e}, and estimates of its errors explain {estimates:e}; ask for a smaller tolerance, or for smaller patches (`--patch SIZE`, a mesh)"
+        "row {patch} sums to 1 only up to {residue:e}, and estimates of its errors explain {estimates:e}; {}", advice(*.overlap)
     )]
     NotClosed {
         /// The row.
@@ -75,5 +75,16 @@ pub enum ExchangeError {
         residue: f64,
         /// The sum of the estimates.
         estimates: f64,
+        /// Two polygons of the scene that show the same way and lie on each other, but not in one plane exactly: which of them is seen there is for rounding to say, and no row may close.
+        overlap: Option<[PolygonId; 2]>,
     },
+}
+
+fn advice(overlap: Option<[PolygonId; 2]>) -> String {
+    match overlap {
+        Some([a, b]) => format!(
+            "polygons {a} and {b} lie on each other within rounding, which tells which of them is seen: cut off one of them where the other one is"
+        ),
+        None => "ask for a smaller tolerance, or for smaller patches (`--patch SIZE`, a mesh)".to_string(),
+    }
 }

@@ -9,9 +9,10 @@ use super::row::{Entry, PatchInfo, Row, Share};
 use super::row_space::RowSpace;
 use super::seen::{Columns, Looker};
 use super::shared::{self, Shared};
-use super::touching::touching_facets;
+use super::shut::Shut;
+use super::touching::{overlap, touching_facets};
 use super::tree::ElementTree;
-use super::{ExchangeError, ExchangeOptions, PatchMesh, PatchPlan};
+use super::{ExchangeError, ExchangeOptions, PatchMesh, PatchPlan, Sides};
 use crate::parallel;
 use crate::scene::Scene;
 use std::ops::Range;
@@ -44,6 +45,7 @@ pub struct Exchange {
     pub(super) trees: Vec<ElementTree>,
     /// The facets that each is face to face with.
     touching: Vec<Vec<u32>>,
+    pub(super) shut: Shut,
     pub(super) options: ExchangeOptions,
     /// Areas as they are in the scene.
     patches: Vec<PatchInfo>,
@@ -81,14 +83,20 @@ impl Exchange {
         if !(tolerance.is_finite() && tolerance > 0.0) {
             return Err(ExchangeError::BadTolerance { tolerance });
         }
-        let trees = elements.of_facet.iter().map(|facet| ElementTree::of(&elements.all, facet)).collect();
+        let trees: Vec<ElementTree> =
+            elements.of_facet.iter().map(|facet| ElementTree::of(&elements.all, facet)).collect();
         let mut patches = elements.patches.clone();
         for (number, patch) in patches.iter_mut().enumerate() {
             patch.area = facets.placement.global_area(patch.area);
             patch.shape = elements.shape(number, facets.placement);
         }
         let touching = touching_facets(&facets, &elements.frames);
-        Ok(Self { facets, elements, trees, touching, options, patches })
+        // Where backs count, those of what stands there are seen.
+        let shut = match options.sides {
+            Sides::Fronts => Shut::of(&Blockers { facets: &facets, elements: &elements, trees: &trees }, &touching),
+            Sides::Both => Shut::default(),
+        };
+        Ok(Self { facets, elements, trees, touching, shut, options, patches })
     }
 
     /// The patches, in the order of their numbers: of polygons, theirs; of objects, that of the first polygons of each; of a mesh, by polygon, then
@@ -191,13 +199,14 @@ impl Exchange {
             }
         }
         let TooLarge { residue, estimates } = failure.unwrap_or(TooLarge { residue: 0.0, estimates: 0.0 });
-        Err(ExchangeError::NotClosed { patch, residue, estimates })
+        let overlap = overlap(&self.facets, &self.elements);
+        Err(ExchangeError::NotClosed { patch, residue, estimates, overlap })
     }
 
     pub(super) fn element_rows<'a>(&'a self, shared: &'a Shared) -> ElementRows<'a> {
-        let Self { facets, elements, trees, touching, options, .. } = self;
+        let Self { facets, elements, trees, touching, shut, options, .. } = self;
         let blockers = Blockers { facets, elements, trees };
-        let looker = Looker { facets, elements, trees, sides: options.sides };
+        let looker = Looker { facets, elements, trees, shut, sides: options.sides };
         ElementRows { blockers, touching, shared, looker, most_views: options.most_views }
     }
 

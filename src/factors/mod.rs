@@ -43,6 +43,7 @@ mod seen;
 mod shaft;
 mod shape;
 mod shared;
+mod shut;
 mod touching;
 mod tree;
 mod viewed;

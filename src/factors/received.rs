@@ -29,7 +29,7 @@ impl<'a> Receivers<'a> {
         near: DVec3,
         radiosity: &[DVec3],
     ) -> Result<Option<DVec3>, ExchangeError> {
-        let Exchange { facets, elements, trees, options, .. } = self.exchange;
+        let Exchange { facets, elements, trees, shut, options, .. } = self.exchange;
         let Some(&element) = elements.of_patch[patch].first() else { return Ok(None) };
         let near = facets.placement.local(near);
         // Of a patch in several planes, that of the part nearest to it.
@@ -40,7 +40,7 @@ impl<'a> Receivers<'a> {
         let mut space = free().pop().unwrap_or_default();
         let columns = Columns { patches: elements.patches.len() as u32 };
         let (mut sum, mut sees_out) = (DVec3::ZERO, false);
-        let looker = Looker { facets, elements, trees, sides: options.sides };
+        let looker = Looker { facets, elements, trees, shut, sides: options.sides };
         let looked = looker.look(
             &mut space,
             facet,

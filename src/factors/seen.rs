@@ -4,6 +4,7 @@ use super::contacts::{TOUCHES, take_out};
 use super::element::Elements;
 use super::facets::Facets;
 use super::shape::{Frame, clip, sides, turn};
+use super::shut::Shut;
 use super::tree::ElementTree;
 use super::{ExchangeError, Sides};
 use crate::contour::{Cell, ContourImage, Domain, ViewOptions, ViewSpace, Viewpoint};
@@ -19,6 +20,7 @@ pub(super) struct Looker<'a> {
     pub(super) facets: &'a Facets,
     pub(super) elements: &'a Elements,
     pub(super) trees: &'a [ElementTree],
+    pub(super) shut: &'a Shut,
     pub(super) sides: Sides,
 }
 
@@ -83,10 +85,12 @@ impl Looker<'_> {
             // What is seen from behind is never left out.
             let wanted = |element: u32| side == Side::Back || is_wanted(element);
             let patch = |element: u32| self.elements.all[element as usize].patch;
+            let may_be_shut = side == Side::Front && self.shut.is_seen(facet, target);
             match of_facet[..] {
                 [] => share(columns.background(), whole(corners)),
                 [first, ref rest @ ..]
-                    if rest.iter().all(|&other| patch(other) == patch(first))
+                    if !may_be_shut
+                        && rest.iter().all(|&other| patch(other) == patch(first))
                         && of_facet.iter().all(|&k| wanted(k)) =>
                 {
                     share(patch(first), whole(corners));
@@ -94,32 +98,48 @@ impl Looker<'_> {
                 _ => {
                     let frame = &self.elements.frames[target as usize];
                     flatten(cell, viewpoint.eye(), frame, flat);
-                    let (low, high) =
-                        flat.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
-                    met.clear();
-                    self.trees[target as usize].meeting(low, high, stack, |element| {
-                        if wanted(element) {
-                            met.push(element);
+                    // As seen from outside of the sphere.
+                    let factor = |part: &[DVec2], corners: &mut Vec<DVec3>| {
+                        let towards = |&p: &DVec2| frame.lift(p) - viewpoint.eye();
+                        if side == Side::Front {
+                            receiver.factor_of(part.iter().rev().map(towards), corners)
+                        } else {
+                            receiver.factor_of(part.iter().map(towards), corners)
                         }
-                    });
-                    for &number in &*met {
-                        let element = &self.elements.all[number as usize];
-                        if flat.iter().all(|&p| element.holds(p)) {
-                            share(element.patch, whole(corners));
-                            break;
+                    };
+                    let mut divide = |flat: &[DVec2], whole: f64, corners: &mut Vec<DVec3>| {
+                        let (low, high) =
+                            flat.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(l, h), &p| (l.min(p), h.max(p)));
+                        met.clear();
+                        self.trees[target as usize].meeting(low, high, stack, |element| {
+                            if wanted(element) {
+                                met.push(element);
+                            }
+                        });
+                        for &number in &*met {
+                            let element = &self.elements.all[number as usize];
+                            if flat.iter().all(|&p| element.holds(p)) {
+                                share(element.patch, whole);
+                                break;
+                            }
+                            let part = common(flat, &element.flat, parts);
+                            if part.len() >= 3 {
+                                share(element.patch, factor(part, corners));
+                            }
                         }
-                        let part = common(flat, &element.flat, parts);
-                        if part.len() >= 3 {
-                            let towards = |&p: &DVec2| frame.lift(p) - viewpoint.eye();
-                            // As seen from outside of the sphere.
-                            let factor = if side == Side::Front {
-                                receiver.factor_of(part.iter().rev().map(towards), corners)
-                            } else {
-                                receiver.factor_of(part.iter().map(towards), corners)
-                            };
-                            share(element.patch, factor);
-                        }
+                    };
+                    let mut left = whole(corners);
+                    if !may_be_shut {
+                        divide(flat, left, corners);
+                        continue;
                     }
+                    for part in self.shut.open(target, frame, flat) {
+                        let open = factor(&part, corners);
+                        left -= open;
+                        divide(&part, open, corners);
+                    }
+                    // What is shut is behind the back of what shuts it.
+                    share(columns.backs(), left.max(0.0));
                 }
             }
         }

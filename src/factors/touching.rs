@@ -6,14 +6,17 @@
 
 use super::ExchangeError;
 use super::Sides;
-use super::contacts::TOUCHES;
+use super::contacts::{TOUCHES, cut, take_out};
 use super::element::{Element, Elements};
 use super::element_row::ElementRows;
 use super::facets::Facets;
 use super::footprints::near_pairs;
 use super::row::Share;
 use super::seen::{LookSpace, SHUT};
-use super::shape::{Frame, clip, sides, turn};
+use super::shaft::Lies;
+use super::shape::{Frame, clip, double_area, sides, turn};
+use super::shut::shuts;
+use crate::scene::PolygonId;
 use glam::{DVec2, DVec3};
 
 /// What an element has of another one that it is face to face with.
@@ -21,17 +24,25 @@ pub(super) struct Touch {
     pub(super) other: u32,
     /// `A_i` `F_ij`.
     pub(super) exchange: Share,
-    /// The other one in the frame of this one, counter-clockwise.
-    pub(super) ring: Vec<DVec2>,
+    /// What is shut by it, in convex parts that run as this one does.
+    rings: Vec<Vec<DVec3>>,
+}
+
+impl Touch {
+    /// Takes what is shut out of convex parts of the element; areas up to that of a strip are nothing.
+    pub(super) fn take_out(&self, parts: &mut Vec<Vec<DVec3>>, element: &Element, frame: &Frame) {
+        for ring in &self.rings {
+            let ring: Vec<DVec2> = ring.iter().map(|&p| frame.flat(p)).collect();
+            take_out(parts, frame, &ring, strip(element));
+        }
+    }
 }
 
 /// For each facet those that face it in its plane, or as near to it as rounding leaves them, ascending.
 pub(super) fn touching_facets(facets: &Facets, frames: &[Frame]) -> Vec<Vec<u32>> {
-    let boxes: Vec<[DVec3; 2]> = facets.all.iter().map(|facet| facet.bounds).collect();
-    let mut found = vec![Vec::new(); boxes.len()];
-    let is_near = |a: usize, b: usize| facets.all[a].ring.iter().all(|&p| frames[b].height(p).abs() <= TOUCHES);
-    near_pairs(&boxes, TOUCHES, |a, b| {
-        if frames[a].normal.dot(frames[b].normal) < 0.0 && (is_near(a, b) || is_near(b, a)) {
+    let mut found = vec![Vec::new(); frames.len()];
+    in_one_plane(facets, frames, |a, b| {
+        if frames[a].normal.dot(frames[b].normal) < 0.0 {
             found[a].push(b as u32);
             found[b].push(a as u32);
         }
@@ -40,6 +51,33 @@ pub(super) fn touching_facets(facets: &Facets, frames: &[Frame]) -> Vec<Vec<u32>
         facets.sort_unstable();
     }
     found
+}
+
+/// Two polygons that show the same way and lie on each other, but not in one plane exactly: the first such pair.
+pub(super) fn overlap(facets: &Facets, elements: &Elements) -> Option<[PolygonId; 2]> {
+    let mut first = None;
+    in_one_plane(facets, &elements.frames, |a, b| {
+        let lies = facets.lies(a as u32, b as u32);
+        if elements.frames[a].normal.dot(elements.frames[b].normal) > 0.0 && lies != Lies::On {
+            let pairs = elements.of_facet[a].iter().flat_map(|&i| elements.of_facet[b].iter().map(move |&j| (i, j)));
+            let on_each_other = pairs.filter(|&(i, j)| common(elements, i, j).is_some());
+            let polygon = |k: u32| elements.patches[elements.all[k as usize].patch as usize].polygon;
+            let pair = on_each_other.map(|(i, j)| [polygon(i).min(polygon(j)), polygon(i).max(polygon(j))]).min();
+            first = [first, pair].into_iter().flatten().min();
+        }
+    });
+    first
+}
+
+/// Calls `found` with all pairs of facets that are in one plane and near each other, or as near to it as rounding leaves them.
+fn in_one_plane(facets: &Facets, frames: &[Frame], mut found: impl FnMut(usize, usize)) {
+    let boxes: Vec<[DVec3; 2]> = facets.all.iter().map(|facet| facet.bounds).collect();
+    let is_near = |a: usize, b: usize| facets.all[a].ring.iter().all(|&p| frames[b].height(p).abs() <= TOUCHES);
+    near_pairs(&boxes, TOUCHES, |a, b| {
+        if is_near(a, b) || is_near(b, a) {
+            found(a, b);
+        }
+    });
 }
 
 /// An area that is no more than a strip as narrow as what is between such facets.
@@ -52,23 +90,64 @@ impl ElementRows<'_> {
     pub(super) fn touching(&self, number: u32, space: &mut LookSpace) -> Result<Vec<Touch>, ExchangeError> {
         let elements = self.blockers.elements;
         let from = &elements.all[number as usize];
-        let frame = &elements.frames[from.facet as usize];
         let mut found = Vec::new();
         // Backs get what arrives at them, then.
         if self.looker.sides == Sides::Both {
             return Ok(found);
         }
         for &facet in &self.touching[from.facet as usize] {
+            let is_solid = shuts(self.blockers.facets, from.facet, facet);
             for &other in &elements.of_facet[facet as usize] {
                 let [i, j] = [number.min(other), number.max(other)];
-                let Some((exchange, middle)) = common(elements, i, j) else { continue };
-                if self.is_shut(i, middle, space)? || self.is_shut(j, middle, space)? {
-                    let ring = elements.all[other as usize].ring.iter().rev().map(|&p| frame.flat(p)).collect();
-                    found.push(Touch { other, exchange, ring });
+                let Some(whole) = common(elements, i, j) else { continue };
+                let mut touch = Touch { other, exchange: Share::default(), rings: Vec::new() };
+                let parts = if is_solid { vec![whole] } else { self.apart(i, j, whole) };
+                let count = parts.len();
+                for part in parts {
+                    let middle = part.iter().sum::<DVec3>() / part.len() as f64;
+                    if is_solid || self.is_shut(i, middle, space)? || self.is_shut(j, middle, space)? {
+                        let Share { factor, error } = exchange(elements, j, &part);
+                        touch.exchange.factor += factor;
+                        touch.exchange.error += error;
+                        touch.rings.push(if number == i { part } else { part.into_iter().rev().collect() });
+                    }
+                }
+                if touch.rings.len() == count {
+                    // As it is, without corners of rounding.
+                    touch.rings = vec![elements.all[other as usize].ring.iter().rev().copied().collect()];
+                }
+                if !touch.rings.is_empty() {
+                    found.push(touch);
                 }
             }
         }
         Ok(found)
+    }
+
+    /// What two elements have in common, in parts between the lines where others stand on either of them: each is shut as a whole, or not at all.
+    fn apart(&self, i: u32, j: u32, common: Vec<DVec3>) -> Vec<Vec<DVec3>> {
+        let elements = self.blockers.elements;
+        let [i, j] = [i, j].map(|number| &elements.all[number as usize]);
+        let [frame, other] = [i, j].map(|element| &elements.frames[element.facet as usize]);
+        let mut contacts = self.blockers.contacts(i);
+        let of_other = self.blockers.contacts(j).into_iter();
+        contacts.extend(of_other.map(|segment| segment.map(|p| frame.flat(other.lift(p)))));
+        let flat: Vec<DVec2> = common.iter().map(|&p| frame.flat(p)).collect();
+        let parts = cut(&flat, i.radius.min(j.radius), &contacts);
+        if parts.len() == 1 {
+            return vec![common];
+        }
+        let mut parts: Vec<Vec<DVec3>> =
+            parts.into_iter().map(|part| part.into_iter().map(|p| frame.lift(p)).collect()).collect();
+        for part in &mut parts {
+            // Sides of rounding have no direction.
+            part.dedup_by(|a, b| a.distance(*b) <= TOUCHES);
+            if part.len() > 1 && part[0].distance(part[part.len() - 1]) <= TOUCHES {
+                part.pop();
+            }
+        }
+        parts.retain(|part| part.len() >= 3);
+        parts
     }
 
     fn is_shut(&self, element: u32, at: DVec3, space: &mut LookSpace) -> Result<bool, ExchangeError> {
@@ -77,11 +156,14 @@ impl ElementRows<'_> {
     }
 }
 
-/// What two elements face to face have in common, and its middle; `None` if that is not more than a strip.
-fn common(elements: &Elements, i: u32, j: u32) -> Option<(Share, DVec3)> {
+/// What two elements in one plane have in common, as the first of them runs; `None` if that is not more than a strip.
+fn common(elements: &Elements, i: u32, j: u32) -> Option<Vec<DVec3>> {
     let [i, j] = [i, j].map(|number| &elements.all[number as usize]);
-    let [frame, other] = [i, j].map(|element| &elements.frames[element.facet as usize]);
-    let ring: Vec<DVec2> = j.ring.iter().rev().map(|&p| frame.flat(p)).collect();
+    let frame = &elements.frames[i.facet as usize];
+    let mut ring: Vec<DVec2> = j.ring.iter().map(|&p| frame.flat(p)).collect();
+    if frame.normal.dot(elements.frames[j.facet as usize].normal) < 0.0 {
+        ring.reverse();
+    }
     let [low, high] = ring.iter().fold([ring[0]; 2], |[low, high], &p| [low.min(p), high.max(p)]);
     if low.cmpge(i.high).any() || high.cmple(i.low).any() {
         return None;
@@ -91,14 +173,45 @@ fn common(elements: &Elements, i: u32, j: u32) -> Option<(Share, DVec3)> {
         clip(&part, |p| turn(a, b, p), &mut cut);
         std::mem::swap(&mut part, &mut cut);
     }
-    let first = *part.first()?;
-    let area = 0.5 * sides(&part).map(|[a, b]| turn(first, a, b)).sum::<f64>();
-    if area <= strip(i).min(strip(j)) {
-        return None;
-    }
-    let middle = frame.lift(part.iter().sum::<DVec2>() / part.len() as f64);
+    let part: Vec<DVec3> = part.into_iter().map(|p| frame.lift(p)).collect();
+    (0.5 * double_area(&part).length() > strip(i).min(strip(j))).then_some(part)
+}
+
+/// What two elements exchange over a part that they have in common.
+fn exchange(elements: &Elements, other: u32, part: &[DVec3]) -> Share {
+    let other = &elements.frames[elements.all[other as usize].facet as usize];
+    let area = 0.5 * double_area(part).length();
     // At the rim light leaves as if the gap were half as wide all along, and through what is not shut.
-    let gap = part.iter().fold(0.0, |gap: f64, &p| gap.max(other.height(frame.lift(p)).abs()));
-    let rim: f64 = sides(&part).map(|[a, b]| a.distance(b)).sum();
-    Some((Share { factor: area, error: gap * rim + SHUT * area }, middle))
+    let gap = part.iter().fold(0.0, |gap: f64, &p| gap.max(other.height(p).abs()));
+    let rim: f64 = sides(part).map(|[a, b]| a.distance(b)).sum();
+    Share { factor: area, error: gap * rim + SHUT * area }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::factors::{Exchange, ExchangeOptions, PatchPlan};
+    use crate::scene::{Material, Scene};
+    use glam::DMat3;
+
+    #[test]
+    fn polygons_that_rounding_has_moved_out_of_one_plane_are_named() {
+        let found = |turn: DMat3, second: [[f64; 3]; 3]| {
+            let first = [[0.0, 0.0, 0.0], [4.0, 0.0, 0.0], [0.0, 3.0, 0.0]];
+            let corners: Vec<[f64; 3]> =
+                first.iter().chain(&second).map(|&p| (turn * DVec3::from(p)).to_array()).collect();
+            let faces = [vec![0, 1, 2], vec![3, 4, 5]];
+            let scene = Scene::builder().mesh(&corners, &faces, Material::new("grey")).build().expect("a scene");
+            let exchange = Exchange::new(&scene, PatchPlan::Polygons, ExchangeOptions::default()).expect("patches");
+            overlap(&exchange.facets, &exchange.elements)
+        };
+        let turn = DMat3::from_rotation_x(0.7) * DMat3::from_rotation_z(0.3);
+        let over = [[0.3, 0.2, 0.0], [1.7, 0.4, 0.0], [0.6, 1.9, 0.0]];
+        assert_eq!(found(turn, over), Some([PolygonId(0), PolygonId(1)]));
+        // In one plane exactly numbers decide; beside each other, and shown the other way, nothing has to be decided; and 1e-6 is no rounding.
+        assert_eq!(found(DMat3::IDENTITY, over), None);
+        assert_eq!(found(turn, [over[0], over[2], over[1]]), None);
+        assert_eq!(found(turn, over.map(|[x, y, z]| [x + 4.0, y, z])), None);
+        assert_eq!(found(turn, over.map(|[x, y, z]| [x, y, z + 1e-6])), None);
+    }
 }
