@@ -106,7 +106,7 @@ pub enum MatrixError {
         path: PathBuf,
     },
     /// A file of rows has been cut off or changed.
-    #[error("{}: {what}; compute it again", path.display())]
+    #[error("{}: {what}; delete it, and compute it again", path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
