@@ -136,7 +136,6 @@ impl Interreflection {
         let progress = SharedProgress::new("rows", Some(exchange.patches().len()), common.quiet);
         let rows = exchange.viewed_rows(0.5 * longest, MOST_FACTORS, &|count| progress.add(count))?;
         drop(progress);
-        // Of surfaces that reflect nearly everything there may be a million.
         let mut progress = Progress::new("bounces", None, common.quiet);
         let Gathered { emission, radiosity, bounces } =
             Gathered::watched(scene, exchange, &rows, self.until, |left| {
