@@ -22,6 +22,14 @@ pub struct Gathered {
 const PATIENCE: usize = 1000;
 
 impl Gathered {
+    /// Checks what needs no rows of form factors, which take long.
+    ///
+    /// # Errors
+    /// If a material has no reflectance, if nothing emits, or if numbers do not hold the power that is emitted, or the area of a patch.
+    pub fn check(scene: &Scene, exchange: &Exchange) -> Result<(), RadiosityError> {
+        surfaces(scene, exchange).map(|_| ())
+    }
+
     /// Gathers at every patch what all others have sent to it, first what they emit, then what they have reflected of that, and so on (Goral, Torrance, Greenberg and Battaile 1984), until what is
     /// still to be sent is no more than `until` of the power that is emitted.
     ///

@@ -132,7 +132,7 @@ impl Interreflection {
         common: &Common,
     ) -> Result<Solution, RadiosityError> {
         // What has no solution is not looked at.
-        Solver::new(scene, exchange, SolverOptions::default())?;
+        Gathered::check(scene, exchange)?;
         let progress = SharedProgress::new("rows", Some(exchange.patches().len()), common.quiet);
         let rows = exchange.viewed_rows(0.5 * longest, MOST_FACTORS, &|count| progress.add(count))?;
         drop(progress);
