@@ -186,8 +186,8 @@ fn bright_rooms_take_few_bounces_and_have_the_solution() {
                 let often = if is_open { 20.0 } else { 1.0 / (1.0 - reflected) };
                 let bound = until * emitted * often + 1e-15 * often * whole;
                 assert!(off <= bound, "{whites:?} {channel} {until}: {off} {bound} of {whole}");
-                for patch in 0..mesh.len() {
-                    let (own, least) = (found.radiosity[patch][channel], emission[patch]);
+                for (patch, &least) in emission.iter().enumerate() {
+                    let own = found.radiosity[patch][channel];
                     assert!(own >= least, "{patch}: {own} {least}");
                     // No light comes from one room to the other.
                     assert!(is_lit || is_open || mesh.polygon(patch).index() < 8 || own == 0.0, "{patch}: {own}");

@@ -243,14 +243,13 @@ impl Shader {
         }
         if mirrors < self.options.mirrors {
             for &(direction, reflectance) in &leaves.mirrors {
-                let Meets { spot, direction } =
-                    match mirrored.filter(|_| is_mirrored(place.towards.outgoing, direction)) {
-                        Some(known) => known,
-                        None => {
-                            let direction = place.towards.to_scene(direction);
-                            Meets { spot: self.first_seen(&mut desk.space, &place, direction)?, direction }
-                        }
-                    };
+                let known = mirrored.filter(|_| is_mirrored(place.towards.outgoing, direction));
+                let Meets { spot, direction } = if let Some(known) = known {
+                    known
+                } else {
+                    let direction = place.towards.to_scene(direction);
+                    Meets { spot: self.first_seen(&mut desk.space, &place, direction)?, direction }
+                };
                 let seen = match spot {
                     Some(spot) => {
                         let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(1);
