@@ -157,8 +157,15 @@ fn halved_patches_are_gone_on_from_and_keep_all_power() {
     let patches = |summary: &Value| summary["patches"].as_u64().expect("a count");
     assert!(patches(&halved) > patches(&plain) && patches(&halved) < 16 * patches(&plain));
     assert!(number(&halved["defect"]) < 1e-12 && number(&halved["unshot"]) <= 0.1, "{halved}");
+    // It is told how many were halved, and that none is uneven if so.
+    let counts: Vec<u64> = halved["halved"].as_array().expect("counts").iter().filter_map(Value::as_u64).collect();
+    assert!(counts.len() == 2 && counts.iter().all(|&count| count > 0), "{halved}");
+    assert_eq!(plain["halved"].as_array().map(Vec::len), Some(0), "{plain}");
+    let told = folder.run(&line.replace("0.4", "1e9 --subdivide 1"), 0);
+    assert!(told.contains("none, as no patch is uneven"), "{told}");
     // Once, kept, and once more: the same as twice.
-    folder.run(&format!("{line} --subdivide 1 --state a.state"), 0);
+    let told = folder.run(&format!("{line} --subdivide 1 --state a.state"), 0);
+    assert!(told.contains(&format!("{} patches that were uneven; some may still be", counts[0])), "{told}");
     folder.run(&format!("{line} --subdivide 2 --state a.state --resume -o c.json"), 0);
     assert_eq!(folder.read("b.json"), folder.read("c.json"));
     // Less often cannot be had from it, nor with another gradient.

@@ -177,7 +177,7 @@ fn subdivided(scene: &Scene, longest: f64, gradient: f64, times: usize) -> Solve
         }
         let patches = mesh.patches().expect("a scene");
         let gather = Gather::new(&exchange, solver.emission(), solver.reflectance(), solver.radiosity());
-        let uneven = uneven_patches(&patches, &mesh.regions(), &gather, gradient).expect("views");
+        let uneven = uneven_patches(&patches, &mesh.regions(), &gather, gradient, &|_| ()).expect("views");
         let (finer, parents) = mesh.halved(|patch| uneven[patch]);
         guess = parents.iter().map(|&parent| radiosity[parent]).collect();
         mesh = finer;
@@ -490,6 +490,16 @@ fn what_cannot_be_solved_is_refused() {
         let expected = if is_dark { RadiosityError::Dark } else { RadiosityError::TooLarge { polygon: PolygonId(0) } };
         assert_eq!(refused, Some(expected));
     }
+    // Parts of it may be too small, or all of it.
+    for dim in [1e-301, 1e-320] {
+        let refused = made(material(0.5, dim / 3.0), material(0.5, dim));
+        assert!(matches!(refused, Err(RadiosityError::TooDim { polygon: PolygonId(5) })), "{dim:e}: {refused:?}");
+    }
+    let scene = hollow(material(0.5, 0.0), material(0.5, 1e-298));
+    let exchange_of_dim = exchange(&scene, 1e-3);
+    let mut solver = Solver::new(&scene, &exchange_of_dim, SolverOptions::default()).expect("a solver");
+    solver.solve(1e-6, |_| true).expect("solved");
+    assert!(solver.balance().defect() < 1e-12, "{}", solver.balance().defect());
     let all = made(material(0.5, 1e299), material(0.5, 1e299));
     assert_eq!(all, Ok(6), "numbers hold that");
     let scene = hollow(material(1.0, 0.0), material(1.0, 1.0));

@@ -374,6 +374,124 @@ fn a_mirror_shows_what_is_there() {
     assert_eq!(found, DVec3::splat(3.0));
 }
 
+/// What glows before a mirror at x = 0, by corners and radiances; the camera is at larger x. One passes through the mirror's plane.
+fn before_mirror() -> Vec<([[f64; 3]; 4], [f64; 3])> {
+    let aslant = [[3.4, 0.1, -0.9], [2.9, 1.2, -0.6], [2.8, 1.4, 0.7], [3.6, 0.2, 0.9]];
+    let beyond = [[4.0, -6.0, -0.3], [4.0, 6.0, -0.1], [4.5, 5.0, 6.0], [4.5, -6.0, 6.0]];
+    let through = [[0.0, -0.5, -0.4], [1.2, -0.3, -0.5], [1.2, -0.3, 0.6], [0.0, -0.5, 0.5]];
+    // Before the mirror, and in it.
+    let post = [[0.6, 0.1, -9.0], [0.6, 0.3, -9.0], [0.6, 0.2, 9.0], [0.6, 0.1, 9.0]];
+    vec![(aslant, [1.0, 0.0, 0.0]), (beyond, [0.0, 0.5, 0.0]), (through, [0.0, 0.0, 2.0]), (post, [0.3, 0.2, 0.1])]
+}
+
+/// A mirror within a black wall at x = 0, or a hole in its place and behind it what would be seen in it; all turned.
+fn with_mirror(is_mirror: bool, turn: DQuat) -> Scene {
+    let dull = || material("dull", 0.0, 0.0);
+    let glow = |emission: [f64; 3]| Material { emission, ..Material::new("glow") };
+    let turned = |ring: &[[f64; 3]]| -> Vec<[f64; 3]> {
+        ring.iter().map(|&p| turn.mul_vec3(DVec3::from(p)).to_array()).collect()
+    };
+    let hole = [[0.0, -1.0, -0.7], [0.0, 1.1, -0.9], [0.0, 0.8, 1.0], [0.0, -0.9, 0.8]];
+    let wall = [[0.0, -60.0, -60.0], [0.0, 60.0, -60.0], [0.0, 60.0, 60.0], [0.0, -60.0, 60.0]];
+    let both: Vec<[f64; 3]> = hole.into_iter().chain(wall).collect();
+    let faces: Vec<Vec<usize>> = (0..4).map(|k| vec![k, 4 + k, 4 + (k + 1) % 4, (k + 1) % 4]).collect();
+    let mut builder = Scene::builder().mesh(&turned(&both), &faces, dull());
+    let face = [vec![0, 1, 2, 3]];
+    if is_mirror {
+        builder = builder.mesh(&turned(&hole), &face, material("mirror", 0.0, 0.0));
+        // Nobody sees what is behind it, though it is where the eye behind the mirror looks through.
+        let behind = [[-0.4, -3.0, -3.0], [-0.4, 3.0, -3.0], [-0.5, 3.0, 3.0], [-0.5, -3.0, 3.0]];
+        builder = builder.mesh(&turned(&behind), &face, glow([7.0; 3]));
+    }
+    for (ring, emission) in before_mirror() {
+        let is_through = ring[0][0] == 0.0;
+        // Behind the mirror's plane there may be more of it.
+        let farther = ring.map(|[x, y, z]| if x == 0.0 { [-0.3, y - 0.05, z - 0.025 * z.signum()] } else { [x, y, z] });
+        let shown = if is_mirror && is_through { farther } else { ring };
+        builder = builder.mesh(&turned(&shown), &face, glow(emission));
+        if !is_mirror {
+            builder = builder.mesh(&turned(&ring.map(|[x, y, z]| [-x, y, z])), &face, glow(emission));
+        }
+    }
+    builder.build().expect("a scene")
+}
+
+/// Areas are exact in mirrors too: as if what they show were behind them.
+#[test]
+fn edges_in_a_flat_mirror_have_the_areas_of_what_it_shows() {
+    let sky = || Some(Sky::constant(DVec3::new(0.0, 0.1, 0.7)).expect("a sky"));
+    let size = UVec2::new(60, 40);
+    for (turn, tolerance) in [(DQuat::IDENTITY, 1e-12), (DQuat::from_euler(EulerRot::XYZ, 0.7, 0.4, -1.1), 1e-11)] {
+        let camera = Frustum::new(turn * DVec3::new(-1.0, 0.1, 0.05), turn * DVec3::Z, 50.0, 1.5).expect("a camera");
+        let eye = turn * DVec3::new(2.7, -0.4, -0.1);
+        let rendered = [true, false].map(|is_mirror| {
+            let scene = with_mirror(is_mirror, turn);
+            let brdf = |material: &Material| -> Box<dyn Brdf> {
+                if material.name == "mirror" {
+                    Box::new(Mirror::new(Fresnel::ALL))
+                } else {
+                    Box::new(Lambert::new(DVec3::ZERO).expect("a BRDF"))
+                }
+            };
+            let brdfs = scene.materials().iter().map(brdf).collect();
+            let lighting = Lighting { sky: sky(), is_two_sided: true, ..Lighting::default() };
+            let shader = Shader::with_brdfs(SceneOrder::new(&scene), brdfs, lighting, ShaderOptions::default());
+            let shader = shader.expect("a shader");
+            let with = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
+                pool.install(|| render(&shader, eye, &camera, size, &|_| ()).expect("a picture"))
+            };
+            let rendered = with(1);
+            assert!(rendered.picture == with(3).picture, "threads matter");
+            rendered
+        });
+        let mut mixed = 0;
+        let pure = [[1.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 2.0], [0.3, 0.2, 0.1], [0.0, 0.1, 0.7], [0.0; 3]];
+        for y in 0..size.y {
+            for x in 0..size.x {
+                let [found, expected] = [0, 1].map(|k: usize| rendered[k].picture.pixel(x, y));
+                assert!((found - expected).abs().max_element() < tolerance, "{x} {y}: {found} {expected}");
+                mixed += usize::from(pure.iter().all(|&p| (expected - DVec3::from(p)).abs().max_element() > 1e-9));
+            }
+        }
+        assert!(mixed > 200, "{mixed} pixels with edges");
+        // On a screen, where parts are cut off at white, too.
+        let [found, expected] = [0, 1].map(|k: usize| rendered[k].displayed(1.7));
+        let pixels = found.pixels().iter().zip(expected.pixels());
+        pixels.for_each(|(a, b)| assert!((*a - *b).abs().max_element() < 2.0 * tolerance, "{a} {b}"));
+    }
+}
+
+/// A room that glows evenly but for a floor that is a mirror, with things on it: no part of a pixel is lost or there twice.
+#[test]
+fn what_mirrors_show_fills_them() {
+    let room = generate(Kind::Room, 300, 2).expect("a room").to_builder().build().expect("a scene");
+    let vertices: Vec<[f64; 3]> = room.vertices().iter().map(DVec3::to_array).collect();
+    let is_floor = |polygon: &PolygonRef<'_>| polygon.material().name == "floor";
+    let rings = |floor: bool| -> Vec<Vec<usize>> {
+        let of = room.polygons().filter(|polygon| is_floor(polygon) == floor);
+        of.map(|polygon| polygon.rings()[0].iter().map(|v| v.index()).collect()).collect()
+    };
+    assert!(!rings(true).is_empty());
+    let builder = Scene::builder().mesh(&vertices, &rings(true), material("mirror", 0.0, 0.0));
+    let scene = builder.mesh(&vertices, &rings(false), material("glow", 0.0, 1.0)).build().expect("a scene");
+    let brdfs: Vec<Box<dyn Brdf>> =
+        vec![Box::new(Mirror::new(Fresnel::ALL)), Box::new(Lambert::new(DVec3::ZERO).expect("a BRDF"))];
+    let lighting = Lighting { is_two_sided: true, ..Lighting::default() };
+    let options = ShaderOptions { mirrors: 1, ..ShaderOptions::default() };
+    let shader = Shader::with_brdfs(SceneOrder::new(&scene), brdfs, lighting, options).expect("a shader");
+    let size = UVec2::new(48, 40);
+    for (towards, degrees) in [(DVec3::new(1.0, 0.6, -0.4), 75.0), (DVec3::new(0.3, 0.2, -1.0), 120.0)] {
+        let camera = Frustum::new(towards, DVec3::Z, degrees, 1.2).expect("a camera");
+        let rendered = render(&shader, DVec3::new(0.4, 0.5, 1.6), &camera, size, &|_| ()).expect("a picture");
+        assert!(rendered.points > 3 * 48 * 40 / 2, "{} points: many pixels have several parts", rendered.points);
+        for (k, pixel) in rendered.picture.pixels().iter().enumerate() {
+            // Some tens of parts, each off by some 1e-14 of a pixel.
+            assert!((*pixel - DVec3::ONE).abs().max_element() < 1e-11, "{k}: {pixel}");
+        }
+    }
+}
+
 /// Each part was followed apart: from mirror to mirror, twice as many rays.
 #[test]
 fn mirrors_of_several_parts_do_not_branch() {

@@ -4,7 +4,7 @@ use glam::DVec3;
 use nusselt::factors::{Exchange, ExchangeError, ExchangeOptions, PatchMesh, ViewedRows};
 use nusselt::radiosity::{Gathered, RadiosityError, Solver, SolverOptions};
 use nusselt::samples::{Kind, generate};
-use nusselt::scene::{Material, Scene};
+use nusselt::scene::{Material, Scene, SceneBuilder};
 use std::f64::consts::PI;
 
 const MOST: usize = 1 << 24;
@@ -19,11 +19,15 @@ fn viewed(exchange: &Exchange, spacing: f64) -> ViewedRows {
 
 /// A box with its fronts inside.
 fn hollow(diffuse: f64, emission: f64) -> Scene {
+    walls(diffuse, emission).build().expect("a scene")
+}
+
+fn walls(diffuse: f64, emission: f64) -> SceneBuilder {
     let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { 0.0 } else { [2.0, 3.0, 1.5][axis] });
     let vertices: Vec<[f64; 3]> = (0..8).map(corner).collect();
     let faces = [[0, 1, 3, 2], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3], [4, 6, 7, 5]];
     let material = Material { diffuse: [diffuse; 3], emission: [emission; 3], ..Material::new("even") };
-    Scene::builder().mesh(&vertices, &faces.map(|face| face.to_vec()), material).build().expect("a scene")
+    Scene::builder().mesh(&vertices, &faces.map(|face| face.to_vec()), material)
 }
 
 fn room() -> Scene {
@@ -71,7 +75,11 @@ fn rows_do_not_depend_on_threads() {
     let exchange = exchange(&mesh, 1e-3);
     let with = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-        pool.install(|| viewed(&exchange, 0.7))
+        pool.install(|| {
+            let rows = viewed(&exchange, 0.7);
+            let found = Gathered::new(&room(), &exchange, &rows, 1e-6).expect("radiosities");
+            (rows, found)
+        })
     };
     assert_eq!(with(1), with(3));
 }
@@ -83,15 +91,130 @@ fn a_furnace_is_even_to_rounding() {
     let exchange = exchange(&mesh, 1e-3);
     let (rows, mut left) = (viewed(&exchange, 0.4), Vec::new());
     let found = Gathered::watched(&scene, &exchange, &rows, 1e-14, |part| left.push(part)).expect("radiosities");
-    // Each bounce takes 0.3 of what there is: 91 of them, as 0.7^90 > 1e-14 > 0.7^91.
-    assert_eq!((found.bounces, left.len()), (91, 91));
-    for (k, part) in left.iter().enumerate() {
-        let expected = 0.7_f64.powi(k as i32 + 1);
-        // Sums of some hundred factors, so many times.
-        assert!((part / expected - 1.0).abs() < 1e-11, "{k}: {part} {expected}");
-    }
+    // What all emit is as much everywhere as what all receive of it, so that one bounce tells all that follow.
+    assert_eq!((found.bounces, left.len()), (2, 2));
+    // Sums of some hundred factors.
+    assert!((left[0] - 0.7).abs() < 1e-13 && left[1] < 1e-14, "{left:?}");
     for radiosity in found.radiosity {
         assert!((radiosity - PI * 2.0 / 0.3).abs().max_element() < 1e-10, "{radiosity}");
+    }
+}
+
+/// Two boxes beside each other, of different colours, with a lamp in the first, and one in the second if that is lit; with lids, or one without.
+fn two_boxes(whites: [[f64; 3]; 2], is_lit: bool, is_open: bool) -> Scene {
+    let faces = [[0, 1, 3, 2], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3], [4, 6, 7, 5]];
+    let mut builder = Scene::builder();
+    for (k, diffuse) in whites.into_iter().enumerate() {
+        let side = [2.0, 3.0, 1.5];
+        let corner = |c: usize| [0, 1, 2].map(|axis| if c >> axis & 1 == 0 { 0.0 } else { side[axis] });
+        let beside = |[x, y, z]: [f64; 3]| [x + 5.0 * k as f64, y, z];
+        let vertices: Vec<[f64; 3]> = (0..8).map(corner).map(beside).collect();
+        let walls = Material { diffuse, ..Material::new("walls") };
+        let faces = &faces[..if is_open { 5 } else { 6 }];
+        builder = builder.mesh(&vertices, &faces.iter().map(|face| face.to_vec()).collect::<Vec<_>>(), walls);
+        if k == 0 || is_lit {
+            let lamp = [[0.5, 0.5, 1.2], [0.5, 1.0, 1.2], [1.1, 1.0, 1.2], [1.1, 0.5, 1.2]].map(beside);
+            // Dark itself, and of all colours but one.
+            let lamp_material = Material { emission: [3.0, 1e-9, 0.0], ..Material::new("lamp") };
+            builder = builder.mesh(&lamp, &[vec![0, 1, 2, 3]], lamp_material);
+            // Its back would take what it gets.
+            let plate = Material { diffuse, ..Material::new("plate") };
+            builder = builder.mesh(&lamp, &[vec![3, 2, 1, 0]], plate);
+        }
+    }
+    builder.build().expect("a scene")
+}
+
+/// Solves `b = e + rho F b` for one channel by elimination.
+fn solved(rows: &ViewedRows, emission: &[f64], reflectance: &[f64]) -> Vec<f64> {
+    let count = emission.len();
+    let mut matrix: Vec<Vec<f64>> = (0..count)
+        .map(|i| {
+            let mut row = vec![0.0; count + 1];
+            rows.row(i).iter().for_each(|&(j, f)| row[j as usize] = -reflectance[i] * f);
+            row[i] += 1.0;
+            row[count] = emission[i];
+            row
+        })
+        .collect();
+    for k in 0..count {
+        // Rows are diagonally dominant, and stay so.
+        let (above, below) = matrix.split_at_mut(k + 1);
+        for row in below.iter_mut().filter(|row| row[k] != 0.0) {
+            let times = row[k] / above[k][k];
+            row[k..].iter_mut().zip(&above[k][k..]).for_each(|(own, other)| *own -= times * other);
+        }
+    }
+    let mut found = vec![0.0; count];
+    for k in (0..count).rev() {
+        let known: f64 = (k + 1..count).map(|j| matrix[k][j] * found[j]).sum();
+        found[k] = (matrix[k][count] - known) / matrix[k][k];
+    }
+    found
+}
+
+#[test]
+fn bright_rooms_take_few_bounces_and_have_the_solution() {
+    let bright = [0.99999, 0.9, 0.5];
+    // The rooms, whether the second one is lit, whether they are open, and how many bounces are enough.
+    let cases = [
+        ([bright, [0.5; 3]], false, false, 25),
+        ([bright, [0.999_99, 0.9999, 0.7]], true, false, 40),
+        ([[0.5, 0.3, 0.1], [0.999_99; 3]], false, false, 25),
+        ([[1.0, 0.9, 0.8], [0.7, 1.0, 0.0]], true, true, 40),
+    ];
+    for (whites, is_lit, is_open, most) in cases {
+        let scene = two_boxes(whites, is_lit, is_open);
+        let mesh = PatchMesh::new(&scene, 0.6).expect("a mesh");
+        let exchange = exchange(&mesh, 1e-3);
+        let rows = viewed(&exchange, 0.5);
+        for until in [1e-4, 1e-10] {
+            let found = Gathered::new(&scene, &exchange, &rows, until).expect("radiosities");
+            assert!(found.bounces <= most, "{whites:?} {until}: {} bounces", found.bounces);
+            for channel in 0..3 {
+                let of_patch = |patch: usize| scene.polygon(exchange.patches()[patch].polygon).material();
+                let reflectance: Vec<f64> = (0..mesh.len()).map(|patch| of_patch(patch).diffuse[channel]).collect();
+                let emission: Vec<f64> = found.emission.iter().map(|e| e[channel]).collect();
+                let expected = solved(&rows, &emission, &reflectance);
+                let area = |patch: usize| exchange.patches()[patch].area;
+                let sum = |of: &dyn Fn(usize) -> f64| (0..mesh.len()).map(|k| of(k) * area(k)).sum::<f64>();
+                let whole = sum(&|k| expected[k]);
+                let emitted = sum(&|k| found.emission[k].element_sum());
+                let off = sum(&|k| (found.radiosity[k][channel] - expected[k]).abs());
+                // What is left may bounce as often as all light does, in the brightest room; the rest is rounding, that both have.
+                let reflected = reflectance.iter().copied().fold(0.0, f64::max);
+                let often = if is_open { 20.0 } else { 1.0 / (1.0 - reflected) };
+                let bound = until * emitted * often + 1e-15 * often * whole;
+                assert!(off <= bound, "{whites:?} {channel} {until}: {off} {bound} of {whole}");
+                for (patch, &least) in emission.iter().enumerate() {
+                    let own = found.radiosity[patch][channel];
+                    assert!(own >= least, "{patch}: {own} {least}");
+                    // No light comes from one room to the other.
+                    assert!(is_lit || is_open || mesh.polygon(patch).index() < 8 || own == 0.0, "{patch}: {own}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn dim_and_bright_emissions_bounce_alike() {
+    let of = |emission: f64| {
+        let lamp = Material { emission: [emission, 0.5 * emission, emission], ..Material::new("lamp") };
+        let vertices = [[0.5, 0.5, 1.2], [0.5, 1.0, 1.2], [1.1, 1.0, 1.2], [1.1, 0.5, 1.2]];
+        let scene = walls(0.99, 0.0).mesh(&vertices, &[vec![0, 1, 2, 3]], lamp).build().expect("a scene");
+        let mesh = PatchMesh::new(&scene, 0.9).expect("a mesh");
+        let exchange = exchange(&mesh, 1e-3);
+        Gathered::new(&scene, &exchange, &viewed(&exchange, 0.5), 1e-9).expect("radiosities")
+    };
+    // A power of two, but for the rounding of pi times it.
+    let one = of(1.0);
+    for scale in [2.0_f64.powi(-1000), 2.0_f64.powi(-520), 2.0_f64.powi(900)] {
+        let other = of(scale);
+        assert_eq!(one.bounces, other.bounces);
+        for (own, other) in one.radiosity.iter().zip(&other.radiosity) {
+            assert!((*own - *other / scale).abs().max_element() <= 1e-12 * own.max_element(), "{own} {other}");
+        }
     }
 }
 

@@ -10,6 +10,7 @@ mod parts;
 pub use coverage::Coverage;
 pub use flat::flat_picture;
 pub use parts::{PixelPart, PixelParts};
+pub(crate) use parts::{ReflectedPart, Reflections};
 
 use glam::{DVec3, UVec2};
 

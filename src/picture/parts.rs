@@ -1,14 +1,19 @@
 //! What is seen in each pixel of a camera's picture, with a point of it.
 
-use super::{Picture, SizeError};
-use crate::contour::{CellId, ContourImage, Domain, Region, ViewFrame};
-use crate::scene::{PolygonId, Side};
-use glam::{DVec2, DVec3, UVec2};
-
+mod knife;
+mod overlay;
 #[cfg(test)]
 mod tests;
 
-/// A part of a pixel: what is seen there of one side of one polygon, or of the background.
+use super::{Picture, SizeError};
+use crate::contour::{Cell, CellId, ContourImage, Domain, Region, ViewFrame};
+use crate::scene::{PolygonId, Side};
+use glam::{DVec2, DVec3, UVec2};
+use knife::Knife;
+use overlay::overlay;
+use std::ops::Range;
+
+/// A part of a pixel: what is seen there of one side of one polygon, or of the background; of a flat mirror, as far as one side of one polygon is seen in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelPart {
     /// The polygon; `None` for background.
@@ -21,6 +26,27 @@ pub struct PixelPart {
     pub direction: DVec3,
     /// A cell that shows it in that direction.
     pub cell: CellId,
+    /// What is seen there in a mirror, if that is known.
+    pub(crate) reflected: Option<ReflectedPart>,
+}
+
+/// What is seen in a mirror at the same place of the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ReflectedPart {
+    /// The number of the mirror.
+    pub(crate) mirror: usize,
+    /// A unit direction in which the eye behind the mirror sees it.
+    pub(crate) direction: DVec3,
+    /// A cell of that eye's image that shows it in that direction.
+    pub(crate) cell: CellId,
+}
+
+/// What a camera sees in flat mirrors: for each the image of the mirrored camera, of what is before the mirror.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Reflections<'a> {
+    pub(crate) images: Vec<&'a ContourImage>,
+    /// For each cell of the camera's own image the mirror that it shows.
+    pub(crate) of_cells: &'a [Option<usize>],
 }
 
 /// Cuts a camera's contour image along the borders of pixels.
@@ -51,24 +77,46 @@ pub struct PixelParts<'a> {
     /// Of the image plane at distance 1: its upper left corner with y up, and the width of a pixel and its height.
     corner: DVec2,
     pixel: DVec2,
-    /// Corners of all cells in pixels with y down, and where those of each cell begin and the last ones end.
+    /// Cells, and parts of those in which mirrors show something.
+    facets: Vec<Facet>,
+    /// Corners of all facets in pixels with y down, and where those of each begin and the last ones end.
     corners: Vec<DVec2>,
     starts: Vec<usize>,
-    /// The numbers of the cells that reach into each band of rows.
+    /// The numbers of the facets that reach into each band of rows.
     bands: Vec<Vec<u32>>,
+    /// The parts of what mirrors show.
+    mirrored: Vec<Self>,
+}
+
+/// A convex part of the picture.
+#[derive(Clone, Copy, Debug)]
+struct Facet {
+    cell: u32,
+    /// The mirror that it shows, and the cell of what is seen in that.
+    reflected: Option<(u32, u32)>,
 }
 
 /// Rows of a band.
 const BAND: u32 = 32;
 
+/// A side of a polygon; `None` is background.
+type Face = Option<(PolygonId, Side)>;
+
+/// What a part shows, and what is seen in that.
+#[derive(Clone, Copy, PartialEq)]
+struct Key {
+    face: Face,
+    reflected: Option<(u32, Face)>,
+}
+
 /// What a pixel has of one polygon, as it is summed up.
 #[derive(Clone, Copy)]
 struct Sum {
-    key: Option<(PolygonId, Side)>,
+    key: Key,
     area: f64,
     moment: DVec2,
-    /// Of how many cells it is, and the largest of these with its area and centroid.
-    cells: u32,
+    /// Of how many facets it is, and the largest of these with its area and centroid.
+    facets: u32,
     largest: (f64, u32, DVec2),
     /// The next of the same pixel.
     next: u32,
@@ -82,48 +130,97 @@ impl<'a> PixelParts<'a> {
     /// # Errors
     /// If a picture of that size cannot be made.
     pub fn new(image: &'a ContourImage, size: UVec2) -> Result<Option<Self>, SizeError> {
-        Picture::check_size(size)?;
-        let Domain::Frustum(frustum) = image.domain() else { return Ok(None) };
-        let half = (frustum.degrees() / 2.0).to_radians().tan();
-        let reach = DVec2::new(half * frustum.aspect(), half);
-        let frame = frustum.frame();
-        let corner = DVec2::new(-reach.x, reach.y);
-        let pixel = 2.0 * reach / size.as_dvec2();
-        let mut parts = Self {
-            image,
-            size,
-            frame,
-            corner,
-            pixel,
-            corners: Vec::new(),
-            starts: vec![0],
-            bands: vec![Vec::new(); size.y.div_ceil(BAND) as usize],
-        };
+        Self::with_reflections(image, size, Reflections::default())
+    }
+
+    /// The same, with what is seen in mirrors apart.
+    pub(crate) fn with_reflections(
+        image: &'a ContourImage,
+        size: UVec2,
+        Reflections { images, of_cells }: Reflections<'a>,
+    ) -> Result<Option<Self>, SizeError> {
+        let Some(mut parts) = Self::empty(image, size)? else { return Ok(None) };
+        for image in images {
+            let Some(mut mirrored) = Self::empty(image, size)? else { return Ok(None) };
+            for cell in image.cells() {
+                let ring = cell.boundary().map(|direction| mirrored.flipped(mirrored.place(direction))).collect();
+                mirrored.add(Facet { cell: cell.id().0, reflected: None }, ring);
+            }
+            parts.mirrored.push(mirrored);
+        }
         for cell in image.cells() {
-            parts.add(cell.boundary());
+            let ring: Vec<DVec2> = cell.boundary().map(|direction| parts.place(direction)).collect();
+            let cell = cell.id().0;
+            match of_cells.get(cell as usize).copied().flatten() {
+                None => parts.add(Facet { cell, reflected: None }, ring),
+                Some(mirror) => {
+                    for (other, ring) in overlay(&ring, &parts.mirrored[mirror]) {
+                        parts.add(Facet { cell, reflected: Some((mirror as u32, other)) }, ring);
+                    }
+                }
+            }
         }
         Ok(Some(parts))
     }
 
-    /// Adds a cell.
-    fn add(&mut self, boundary: impl Iterator<Item = DVec3>) {
-        let start = self.corners.len();
-        for direction in boundary {
-            let d = self.frame.components(direction);
-            let p = d.truncate() / d.z;
-            self.corners.push(DVec2::new(p.x - self.corner.x, self.corner.y - p.y) / self.pixel);
+    /// For the camera of an image, without any facet yet.
+    fn empty(image: &'a ContourImage, size: UVec2) -> Result<Option<Self>, SizeError> {
+        Picture::check_size(size)?;
+        let Domain::Frustum(frustum) = image.domain() else { return Ok(None) };
+        let half = (frustum.degrees() / 2.0).to_radians().tan();
+        let reach = DVec2::new(half * frustum.aspect(), half);
+        Ok(Some(Self {
+            image,
+            size,
+            frame: frustum.frame(),
+            corner: DVec2::new(-reach.x, reach.y),
+            pixel: 2.0 * reach / size.as_dvec2(),
+            facets: Vec::new(),
+            corners: Vec::new(),
+            starts: vec![0],
+            bands: vec![Vec::new(); size.y.div_ceil(BAND) as usize],
+            mirrored: Vec::new(),
+        }))
+    }
+
+    /// Where a direction is in the picture.
+    fn place(&self, direction: DVec3) -> DVec2 {
+        let d = self.frame.components(direction);
+        let p = d.truncate() / d.z;
+        DVec2::new(p.x - self.corner.x, self.corner.y - p.y) / self.pixel
+    }
+
+    /// A place of a mirrored camera's picture in that of the camera: what is to the right for one is to the left for the other.
+    fn flipped(&self, at: DVec2) -> DVec2 {
+        DVec2::new(f64::from(self.size.x) - at.x, at.y)
+    }
+
+    /// Adds a convex part of the picture.
+    fn add(&mut self, facet: Facet, ring: Vec<DVec2>) {
+        let number = self.facets.len() as u32;
+        for band in self.bands_of(&ring) {
+            self.bands[band].push(number);
         }
-        let ring = &self.corners[start..];
+        self.facets.push(facet);
+        self.corners.extend(ring);
+        self.starts.push(self.corners.len());
+    }
+
+    /// The bands of rows that a ring reaches into.
+    fn bands_of(&self, ring: &[DVec2]) -> Range<usize> {
         let (low, high) =
             ring.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p.y), high.max(p.y)));
         if ring.iter().all(|p| p.is_finite()) && high > 0.0 && low < f64::from(self.size.y) {
-            let cell = self.starts.len() as u32 - 1;
             let last = (high.min(f64::from(self.size.y) - 0.5) as u32) / BAND;
-            for band in (low.max(0.0) as u32) / BAND..=last {
-                self.bands[band as usize].push(cell);
-            }
+            ((low.max(0.0) as u32) / BAND) as usize..last as usize + 1
+        } else {
+            0..0
         }
-        self.starts.push(self.corners.len());
+    }
+
+    /// The corners of a facet.
+    fn ring(&self, facet: u32) -> &[DVec2] {
+        &self.corners[self.starts[facet as usize]..self.starts[facet as usize + 1]]
     }
 
     /// The image that is cut.
@@ -157,15 +254,11 @@ impl<'a> PixelParts<'a> {
         for band in low.y / BAND..high.y.div_ceil(BAND) {
             let first = low.y.max(band * BAND);
             let end = high.y.min((band + 1) * BAND);
-            for &cell in &self.bands[band as usize] {
-                let range = self.starts[cell as usize]..self.starts[cell as usize + 1];
-                let key = {
-                    let cell = self.image.cell(CellId(cell));
-                    cell.polygon().zip(cell.side())
-                };
-                knife.cut(&self.corners[range], [low.x, high.x], [first, end], |x, y, area, moment| {
+            for &facet in &self.bands[band as usize] {
+                let key = self.key(self.facets[facet as usize]);
+                knife.cut(self.ring(facet), [low.x, high.x], [first, end], |x, y, area, moment| {
                     let head = &mut heads[(y - low.y) as usize * width + (x - low.x) as usize];
-                    add_to(head, &mut sums, key, cell, area, moment);
+                    add_to(head, &mut sums, key, facet, area, moment);
                 });
             }
         }
@@ -186,139 +279,77 @@ impl<'a> PixelParts<'a> {
         }
     }
 
+    fn key(&self, Facet { cell, reflected }: Facet) -> Key {
+        let reflected = reflected.map(|(mirror, cell)| {
+            let image = self.mirrored[mirror as usize].image;
+            (mirror, face(image.cell(CellId(cell))))
+        });
+        Key { face: face(self.image.cell(CellId(cell))), reflected }
+    }
+
     /// What a sum says, with a direction in which it is seen.
     fn part(&self, sum: &Sum) -> Option<PixelPart> {
         let (_, largest, its_centroid) = sum.largest;
-        let (polygon, side) = sum.key.unzip();
+        let facet = self.facets[largest as usize];
         let centroid = sum.moment / sum.area;
-        let direction = self.direction(if centroid.is_finite() { centroid } else { its_centroid });
-        let part = PixelPart { polygon, side, area: sum.area, direction, cell: CellId(largest) };
-        // What one cell has in a pixel is convex.
-        if sum.cells == 1 {
-            return direction.is_finite().then_some(part);
-        }
-        let found = self.image.locate(direction).regions().into_iter().find_map(|region| match region {
-            Region::Cell(id) => {
-                let cell = self.image.cell(id);
-                (cell.polygon().zip(cell.side()) == sum.key).then_some(id)
-            }
-            Region::Outside => None,
+        let at = if centroid.is_finite() { centroid } else { its_centroid };
+        // What one facet has in a pixel is convex.
+        let found = if sum.facets == 1 { Some(facet) } else { self.facet_at(at, sum.key) };
+        let (facet, at) = found.map_or((facet, its_centroid), |facet| (facet, at));
+        let reflected = facet.reflected.map(|(mirror, cell)| {
+            let mirrored = &self.mirrored[mirror as usize];
+            let direction = mirrored.direction(mirrored.flipped(at));
+            ReflectedPart { mirror: mirror as usize, direction, cell: CellId(cell) }
         });
-        let part = match found {
-            Some(cell) => PixelPart { cell, ..part },
-            None => PixelPart { direction: self.direction(its_centroid), ..part },
+        let (polygon, side) = sum.key.face.unzip();
+        let direction = self.direction(at);
+        let part = PixelPart { polygon, side, area: sum.area, direction, cell: CellId(facet.cell), reflected };
+        let is_finite = direction.is_finite() && reflected.is_none_or(|reflected| reflected.direction.is_finite());
+        is_finite.then_some(part)
+    }
+
+    /// The cells of what is seen at a place of the picture, if that is what a key says.
+    fn facet_at(&self, at: DVec2, key: Key) -> Option<Facet> {
+        let cell = cell_at(self.image, self.direction(at), key.face)?;
+        let reflected = match key.reflected {
+            None => None,
+            Some((mirror, face)) => {
+                let mirrored = &self.mirrored[mirror as usize];
+                Some((mirror, cell_at(mirrored.image, mirrored.direction(mirrored.flipped(at)), face)?))
+            }
         };
-        part.direction.is_finite().then_some(part)
+        Some(Facet { cell, reflected })
     }
 }
 
-/// Adds what a cell has in a pixel to the chain of its sums.
-fn add_to(head: &mut u32, sums: &mut Vec<Sum>, key: Option<(PolygonId, Side)>, cell: u32, area: f64, moment: DVec2) {
+fn face(cell: Cell<'_>) -> Face {
+    cell.polygon().zip(cell.side())
+}
+
+/// The cell of a direction that shows a face.
+fn cell_at(image: &ContourImage, direction: DVec3, shown: Face) -> Option<u32> {
+    image.locate(direction).regions().into_iter().find_map(|region| match region {
+        Region::Cell(id) => (face(image.cell(id)) == shown).then_some(id.0),
+        Region::Outside => None,
+    })
+}
+
+/// Adds what a facet has in a pixel to the chain of its sums.
+fn add_to(head: &mut u32, sums: &mut Vec<Sum>, key: Key, facet: u32, area: f64, moment: DVec2) {
     let mut next = *head;
     while next != NONE {
         let sum = &mut sums[next as usize];
         if sum.key == key {
             sum.area += area;
             sum.moment += moment;
-            sum.cells += 1;
+            sum.facets += 1;
             if area > sum.largest.0 {
-                sum.largest = (area, cell, moment / area);
+                sum.largest = (area, facet, moment / area);
             }
             return;
         }
         next = sum.next;
     }
-    sums.push(Sum { key, area, moment, cells: 1, largest: (area, cell, moment / area), next: *head });
+    sums.push(Sum { key, area, moment, facets: 1, largest: (area, facet, moment / area), next: *head });
     *head = sums.len() as u32 - 1;
-}
-
-/// Cuts convex polygons along pixels.
-#[derive(Default)]
-struct Knife {
-    strip: Vec<DVec2>,
-    rest: Vec<DVec2>,
-    part: Vec<DVec2>,
-    other: Vec<DVec2>,
-}
-
-impl Knife {
-    /// Calls with column, row, area and first moment (area times centroid) of what a convex polygon has in each pixel within columns and rows.
-    fn cut(&mut self, ring: &[DVec2], columns: [u32; 2], rows: [u32; 2], mut f: impl FnMut(u32, u32, f64, DVec2)) {
-        let (low, high) =
-            ring.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
-        let [left, right] = columns.map(f64::from);
-        if high.x <= left || low.x >= right {
-            return;
-        }
-        let first = (low.y.max(0.0) as u32).max(rows[0]);
-        let end = (high.y.max(0.0).ceil() as u32).min(rows[1]);
-        for y in first..end {
-            halve(ring, 1, f64::from(y), &mut self.rest, None);
-            halve(&self.rest, 1, f64::from(y + 1), &mut self.other, Some(&mut self.strip));
-            let (from, to) = extent(&self.strip);
-            if self.strip.len() < 3 || to <= left || from >= right {
-                continue;
-            }
-            let first = from.max(left) as u32;
-            // What is to the left of the columns is cut off.
-            halve(&self.strip, 0, f64::from(first), &mut self.rest, None);
-            for x in first..(to.min(right).ceil() as u32) {
-                halve(&self.rest, 0, f64::from(x + 1), &mut self.other, Some(&mut self.part));
-                std::mem::swap(&mut self.rest, &mut self.other);
-                let (area, moment) = area_and_moment(&self.part, DVec2::new(f64::from(x), f64::from(y)));
-                if area > 0.0 {
-                    f(x, y, area, moment);
-                }
-            }
-        }
-    }
-}
-
-/// The least and the largest x.
-fn extent(ring: &[DVec2]) -> (f64, f64) {
-    ring.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), p| (low.min(p.x), high.max(p.x)))
-}
-
-/// Cuts a convex polygon at a line across an axis: what is beyond, and what is before.
-fn halve(ring: &[DVec2], axis: usize, at: f64, beyond: &mut Vec<DVec2>, mut before: Option<&mut Vec<DVec2>>) {
-    beyond.clear();
-    if let Some(before) = &mut before {
-        before.clear();
-    }
-    for (k, &p) in ring.iter().enumerate() {
-        let q = ring[if k + 1 == ring.len() { 0 } else { k + 1 }];
-        let (a, b) = (p[axis] - at, q[axis] - at);
-        if a >= 0.0 {
-            beyond.push(p);
-        }
-        if let Some(before) = &mut before
-            && a <= 0.0
-        {
-            before.push(p);
-        }
-        if (a < 0.0 && b > 0.0) || (a > 0.0 && b < 0.0) {
-            let mut crossing = p + (q - p) * (a / (a - b));
-            crossing[axis] = at;
-            beyond.push(crossing);
-            if let Some(before) = &mut before {
-                before.push(crossing);
-            }
-        }
-    }
-}
-
-/// The area of a polygon that runs either way, and its first moment, summed about a corner near it.
-fn area_and_moment(ring: &[DVec2], near: DVec2) -> (f64, DVec2) {
-    let (mut double, mut moment) = (0.0, DVec2::ZERO);
-    for (k, &p) in ring.iter().enumerate() {
-        let (p, q) = (p - near, ring[if k + 1 == ring.len() { 0 } else { k + 1 }] - near);
-        let cross = p.perp_dot(q);
-        double += cross;
-        moment += (p + q) * cross;
-    }
-    let sign = if double < 0.0 { -1.0 } else { 1.0 };
-    let area = 0.5 * sign * double;
-    // Within the pixel, whatever rounding does to slivers.
-    let centroid = (moment * (sign / 6.0) / area).clamp(DVec2::ZERO, DVec2::ONE);
-    (area, (centroid + near) * area)
 }

@@ -30,6 +30,15 @@ pub enum RadiosityError {
         /// The polygon with which it is too much.
         polygon: PolygonId,
     },
+    /// What is emitted is so little that numbers do not hold the parts that it falls into.
+    #[error(
+        "polygon {polygon}: its power, the largest there is, is so small that numbers do not hold its parts; use a larger \
+         emission (Ke), or a smaller unit of length if the scene is tiny"
+    )]
+    TooDim {
+        /// The polygon that emits most.
+        polygon: PolygonId,
+    },
     /// Numbers do not hold the area of a patch, so that they do not hold its power.
     #[error("polygon {polygon}: its area is more than numbers hold; use a larger unit of length")]
     TooLarge {

@@ -10,7 +10,7 @@ use glam::DVec3;
 /// patches reflect if that is larger (by the color channel in which they differ most). Such patches are to be halved ([`PatchMesh::halved`](crate::factors::PatchMesh::halved)).
 ///
 /// The scene is that of the patches; corners are shared by patches of one region ([`PatchMesh::regions`](crate::factors::PatchMesh::regions)), but not by both sides of what stands on it. The cost is a view for
-/// every corner and every patch that reflects. Corners are taken a thousandth of the way inside, and left out where they are covered.
+/// every corner and every patch that reflects; `done` is told from any thread how many more views are made. Corners are taken a thousandth of the way inside, and left out where they are covered.
 ///
 /// # Errors
 /// If there is no view from some point.
@@ -22,6 +22,7 @@ pub fn uneven_patches(
     regions: &[PolygonId],
     gather: &Gather<'_>,
     part: f64,
+    done: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<bool>, RadiosityError> {
     let reflects = |piece: &PieceRef<'_>| gather.reflected(piece.polygon().index()).is_some();
     let pieces: Vec<PieceRef<'_>> = patches.pieces().filter(reflects).collect();
@@ -34,7 +35,7 @@ pub fn uneven_patches(
         own.push(places.len());
         places.push((piece.polygon(), mean_of(&piece.points().collect::<Vec<_>>())));
     }
-    let found = gather.uncovered_at_all(places, &|_| ())?;
+    let found = gather.uncovered_at_all(places, done)?;
     let mean = mean_reflected(gather);
     let is_uneven = |(patch, places): (usize, Vec<usize>)| {
         let emission = gather.emission(PolygonId(patch as u32));

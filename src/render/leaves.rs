@@ -3,6 +3,9 @@
 use crate::brdf::{Brdf, Form};
 use glam::DVec3;
 
+/// A direction towards a viewer by whom all mirrors are seen: from straight above some are left out of a sum.
+pub(super) const ASLANT: DVec3 = DVec3::new(0.6, 0.0, 0.8);
+
 /// The parts of a BRDF for one direction towards the viewer.
 #[derive(Default)]
 pub(super) struct Leaves<'a> {
@@ -44,6 +47,11 @@ impl<'a> Leaves<'a> {
             self.mirrors.push((direction, reflectance));
         }
     }
+}
+
+/// True if light from there is reflected as by a flat mirror; both are in the surface's frame.
+pub(super) fn is_mirrored(outgoing: DVec3, incoming: DVec3) -> bool {
+    incoming == DVec3::new(-outgoing.x, -outgoing.y, outgoing.z)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 //! [`render`] cuts the contour image of a camera along the borders of pixels ([`PixelParts`](crate::picture::PixelParts)): which polygon is seen in a pixel, and in what part
 //! of it, is not sampled. A [`Shader`] tells the radiance that each part sends to the eye: light of lamps from what is seen of them through windows, so that shadows are
 //! soft without noise; lights without extent by exact shadow tests; interreflection from a solution of the radiosity ([`Indirect`]); gloss by the integral of the
-//! BRDF over all that is seen; mirrors by what is seen in them.
+//! BRDF over all that is seen; mirrors by what is seen in them, cut along pixels in the same way where the camera sees a flat mirror.
 //!
 //! In place of the contour image a shader can take a hemicube (Meyer, *Hemi-Cube Ray-Tracing: A Method for Generating Soft Shadows*, 1990) or random rays at each
 //! point ([`Shading`]), for comparisons.
@@ -22,11 +22,13 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod before;
 mod contour;
 mod error;
 mod indirect;
 mod leaves;
 mod lights;
+mod mirrors;
 mod mixed;
 mod patch_index;
 mod picture;

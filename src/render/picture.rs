@@ -1,5 +1,6 @@
 //! From a camera to a picture.
 
+use super::mirrors::Mirrors;
 use super::mixed::Mixed;
 use super::{RenderError, Shader, Spot};
 use crate::contour::{Domain, Frustum, Viewpoint};
@@ -13,7 +14,7 @@ use std::ops::Range;
 pub struct Rendered {
     /// Radiances.
     pub picture: Picture,
-    /// How many points were shaded: one for each polygon in each pixel where it is seen.
+    /// How many points were shaded: one for each polygon in each pixel where it is seen; for a mirror, one for each that is seen in it.
     pub points: usize,
     /// The largest of red, green and blue of what each pixel's surfaces reflect, without what they emit; NaN where none is seen.
     reflected: Vec<f64>,
@@ -67,7 +68,7 @@ const BATCH: u32 = 1024;
 
 /// Renders what a camera at `eye` sees. `done` is told from any thread how many more pixels are.
 ///
-/// Which polygon is seen in what part of a pixel is exact; each is shaded at one point of that part ([`PixelPart::direction`]), and the pixel is the sum of areas times radiances. The result does not depend
+/// Which polygon is seen in what part of a pixel is exact, and so is which one is seen in a flat mirror, in the 16 planes of mirrors that take most of the picture; each is shaded at one point of that part ([`PixelPart::direction`]), and the pixel is the sum of areas times radiances. The result does not depend
 /// on the number of threads. Memory: 32 bytes for each pixel, as many for each part of those that show more than one polygon, and what [`render_bands`] takes.
 ///
 /// # Errors
@@ -106,7 +107,8 @@ pub fn render_bands<E: From<RenderError>>(
 ) -> Result<usize, E> {
     let image = shader.order().view(&Viewpoint::free(eye), &Domain::Frustum(*camera));
     let image = image.map_err(|source| RenderError::View { from: "the camera", source })?;
-    let parts = PixelParts::new(&image, size).map_err(RenderError::from)?;
+    let mirrors = Mirrors::new(shader, &image, camera)?;
+    let parts = PixelParts::with_reflections(&image, size, mirrors.reflections()).map_err(RenderError::from)?;
     let Some(parts) = parts else { unreachable!("it is the image of a camera") };
     let columns = size.x.div_ceil(TILE);
     let rows = (BATCH / columns).max(1) * TILE;
@@ -116,7 +118,7 @@ pub fn render_bands<E: From<RenderError>>(
         let lows = (top..bottom).step_by(TILE as usize);
         let lows = lows.flat_map(|y| (0..columns).map(move |x| UVec2::new(x * TILE, y)));
         let tiles = parallel::map(lows.collect(), |low| {
-            let tile = Tile::new(shader, &parts, low);
+            let tile = Tile::new(shader, &parts, &mirrors, low);
             if let Ok(tile) = &tile {
                 done(tile.pixels.len());
             }
@@ -158,12 +160,12 @@ struct Pixel {
 }
 
 impl Tile {
-    fn new(shader: &Shader, parts: &PixelParts<'_>, low: UVec2) -> Result<Self, RenderError> {
+    fn new(shader: &Shader, parts: &PixelParts<'_>, mirrors: &Mirrors, low: UVec2) -> Result<Self, RenderError> {
         let mut tile = Self::default();
         let mut failure = None;
         parts.tile(low, low + TILE, |x, y, of_pixel| {
             if failure.is_none() {
-                failure = tile.shade(shader, parts, UVec2::new(x, y), of_pixel).err();
+                failure = tile.shade(shader, parts, mirrors, UVec2::new(x, y), of_pixel).err();
             }
         });
         failure.map_or(Ok(tile), Err)
@@ -174,6 +176,7 @@ impl Tile {
         &mut self,
         shader: &Shader,
         parts: &PixelParts<'_>,
+        mirrors: &Mirrors,
         at: UVec2,
         of_pixel: &[PixelPart],
     ) -> Result<(), RenderError> {
@@ -187,7 +190,8 @@ impl Tile {
                 let near = cell.point_at(part.direction).unwrap_or(cell.image().viewpoint().eye());
                 let spot = Spot { piece, side, near };
                 let seed = number.wrapping_mul(64).wrapping_add(k as u64);
-                let from_light = shader.reflected_where_seen(&spot, -part.direction, seed)?;
+                let mirrored = part.reflected.map(|reflected| mirrors.meets(reflected));
+                let from_light = shader.reflected_where_seen(&spot, -part.direction, seed, mirrored)?;
                 reflected += from_light * part.area;
                 area += part.area;
                 self.points += 1;

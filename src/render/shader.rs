@@ -1,6 +1,7 @@
 //! The radiance that a point of a surface sends.
 
-use super::leaves::Leaves;
+use super::leaves::{Leaves, is_mirrored};
+use super::mirrors::Meets;
 use super::{Indirect, RenderError, lights};
 use crate::brdf::{self, Brdf, Emission, Lighting, ReflectError};
 use crate::contour::{Cell, ContourImage, Domain, SceneOrder, ViewError, ViewSpace, Viewpoint, Windows};
@@ -195,16 +196,22 @@ impl Shader {
         if place.height < -1e-9 {
             return Err(place.reflect_error(ReflectError::BadView(viewer)));
         }
-        self.reflected_where_seen(spot, viewer, seed)
+        self.reflected_where_seen(spot, viewer, seed, None)
     }
 
-    /// The same where the surface is known to be seen: that the viewer is below it is rounding.
-    pub(super) fn reflected_where_seen(&self, spot: &Spot, viewer: DVec3, seed: u64) -> Result<DVec3, RenderError> {
+    /// The same where the surface is known to be seen: that the viewer is below it is rounding. What is seen in it as in a flat mirror may be known.
+    pub(super) fn reflected_where_seen(
+        &self,
+        spot: &Spot,
+        viewer: DVec3,
+        seed: u64,
+        mirrored: Option<Meets>,
+    ) -> Result<DVec3, RenderError> {
         // A desk is only ever taken or put back whole.
         let free = || self.desks.lock().unwrap_or_else(PoisonError::into_inner);
         let taken = free().pop();
         let mut desk = taken.unwrap_or_default();
-        let result = self.reflected_at(&mut desk, spot, viewer, seed, 0);
+        let result = self.reflected_at(&mut desk, spot, viewer, seed, 0, mirrored);
         free().push(desk);
         result
     }
@@ -222,6 +229,7 @@ impl Shader {
         viewer: DVec3,
         seed: u64,
         mirrors: u32,
+        mirrored: Option<Meets>,
     ) -> Result<DVec3, RenderError> {
         let place = Place::new(self, *spot, viewer)?;
         let leaves = Leaves::new(place.brdf, place.towards.outgoing);
@@ -235,11 +243,17 @@ impl Shader {
         }
         if mirrors < self.options.mirrors {
             for &(direction, reflectance) in &leaves.mirrors {
-                let direction = place.towards.to_scene(direction);
-                let seen = match self.first_seen(&mut desk.space, &place, direction)? {
+                let known = mirrored.filter(|_| is_mirrored(place.towards.outgoing, direction));
+                let Meets { spot, direction } = if let Some(known) = known {
+                    known
+                } else {
+                    let direction = place.towards.to_scene(direction);
+                    Meets { spot: self.first_seen(&mut desk.space, &place, direction)?, direction }
+                };
+                let seen = match spot {
                     Some(spot) => {
                         let seed = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(1);
-                        self.emitted(&spot) + self.reflected_at(desk, &spot, -direction, seed, mirrors + 1)?
+                        self.emitted(&spot) + self.reflected_at(desk, &spot, -direction, seed, mirrors + 1, None)?
                     }
                     None => self.background(direction),
                 };

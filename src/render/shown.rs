@@ -1,6 +1,6 @@
 //! What cameras show of the patches of interreflection.
 
-use super::leaves::Leaves;
+use super::leaves::{ASLANT, Leaves};
 use super::{Indirect, RenderError, Shader};
 use crate::brdf::Brdf;
 use crate::contour::{Domain, Frustum, Viewpoint};
@@ -15,8 +15,7 @@ impl Shader {
     pub fn shown(&self, indirect: &Indirect, eye: DVec3, camera: &Frustum) -> Result<Vec<bool>, RenderError> {
         indirect.check(self.scene())?;
         let count = indirect.patch_count();
-        // From aslant, so that what is left out of a sum at right angles is not.
-        let has_mirror = |brdf: &dyn Brdf| !Leaves::new(brdf, DVec3::new(0.6, 0.0, 0.8)).mirrors.is_empty();
+        let has_mirror = |brdf: &dyn Brdf| !Leaves::new(brdf, ASLANT).mirrors.is_empty();
         if self.options.mirrors > 0 && self.brdfs.iter().any(|brdf| has_mirror(&**brdf)) {
             return Ok(vec![true; count]);
         }

@@ -1,7 +1,7 @@
 //! Line drawings: visible surfaces as filled regions, and visible edges by kind over them.
 
 use super::paint::{Paint, hex};
-use super::{Canvas, Escaped, MARGIN, Number, PathData};
+use super::{Canvas, Escaped, MARGIN, PathData, open, paper};
 use crate::contour::{ContourImage, EdgeTracer, Projector, RegionLoop, VisibleRegion};
 use crate::exact::Sign;
 use crate::scene::{EdgeId, PieceId, PolygonId, Scene, Side};
@@ -97,17 +97,12 @@ pub fn write_drawing(
     let mut out = BufWriter::new(out);
     let canvas = Canvas::new(projector, options.size);
     let size = canvas.size + 2.0 * MARGIN;
-    let (width, height) = (Number(size.x), Number(size.y));
-    writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
-    writeln!(
-        out,
-        r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">"#
-    )?;
+    open(size, &mut out)?;
     let eye = image.viewpoint().eye();
     writeln!(out, "<title>Drawing from ({}, {}, {})</title>", eye.x, eye.y, eye.z)?;
     writeln!(out, "<style>\n{STYLE}</style>")?;
     writeln!(out, r#"<clipPath id="picture"><path d="{}"/></clipPath>"#, canvas.border())?;
-    writeln!(out, r#"<rect width="{width}" height="{height}" fill="white"/>"#)?;
+    paper(size, &mut out)?;
     writeln!(out, r#"<g clip-path="url(#picture)">"#)?;
     let mut counts = DrawingCounts { regions: fills(image, &canvas, options, &mut out)?, ..DrawingCounts::default() };
     let lines = Lines::new(image, &canvas, options, &mut counts);

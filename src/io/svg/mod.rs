@@ -49,16 +49,11 @@ pub fn write_svg(image: &ContourImage, projector: &Projector, options: &SvgOptio
     let mut out = BufWriter::new(out);
     let canvas = Canvas::new(projector, options.size);
     let size = canvas.size + 2.0 * MARGIN + if options.show_tree { DVec2::Y * LEGEND } else { DVec2::ZERO };
-    let (width, height) = (Number(size.x), Number(size.y));
-    writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
-    writeln!(
-        out,
-        r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">"#
-    )?;
+    open(size, &mut out)?;
     let visible = cells_of_polygons(image);
     head(image, projector, &visible, &mut out)?;
     writeln!(out, "<style>\n{}</style>", lines::STYLE)?;
-    writeln!(out, r#"<rect width="{width}" height="{height}" fill="white"/>"#)?;
+    paper(size, &mut out)?;
     // Pale below a tree.
     let opacity = if options.show_tree { r#" opacity="0.55""# } else { "" };
     writeln!(out, r#"<g stroke-width="1" stroke-linejoin="round"{opacity}>"#)?;
@@ -85,6 +80,21 @@ fn cells_of_polygons(image: &ContourImage) -> Visible {
     cells.sort_unstable();
     let groups = cells.chunk_by(|a, b| a.0 == b.0);
     groups.map(|group| (group[0].0, group.iter().map(|&(_, id)| id).collect())).collect()
+}
+
+/// Opens a file of that size.
+fn open(size: DVec2, out: &mut impl Write) -> io::Result<()> {
+    let (width, height) = (Number(size.x), Number(size.y));
+    writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
+    writeln!(
+        out,
+        r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">"#
+    )
+}
+
+/// White, all over a picture of that size.
+fn paper(size: DVec2, out: &mut impl Write) -> io::Result<()> {
+    writeln!(out, r#"<rect width="{}" height="{}" fill="white"/>"#, Number(size.x), Number(size.y))
 }
 
 fn head(image: &ContourImage, projector: &Projector, visible: &Visible, out: &mut impl Write) -> io::Result<()> {

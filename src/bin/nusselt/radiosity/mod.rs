@@ -122,9 +122,9 @@ impl Radiosity {
         let stage = work.first_stage()?;
         let order_s = start.elapsed().as_secs_f64();
         let start = Instant::now();
-        work.solve(stage, |stage, solver| {
+        work.solve(stage, |stage, solver, halved| {
             let times = Spent { load: load_s, order: order_s, solve: start.elapsed().as_secs_f64() };
-            self.finish(stage, solver, times, &files, common)
+            self.finish(stage, solver, halved, times, &files, common)
         })
     }
 
@@ -140,6 +140,7 @@ impl Radiosity {
         &self,
         stage: &Stage,
         solver: &Solver<'_>,
+        halved: &[usize],
         Spent { load: load_s, order: order_s, solve: solve_s }: Spent,
         files: &[&Path],
         common: &Common,
@@ -153,7 +154,7 @@ impl Radiosity {
         let corners = surface.map_or(0, |surface| surface.positions.len());
         if common.json {
             return print_json(&json!({
-                "schema": "nusselt.radiosity/1", "patches": exchange.patches().len(), "shots": solver.state().shots,
+                "schema": "nusselt.radiosity/1", "patches": exchange.patches().len(), "shots": solver.state().shots, "halved": halved,
                 "unshot": balance.unshot_fraction(), "defect": balance.defect(),
                 "emitted": balance.emitted.to_array(), "absorbed": balance.absorbed.to_array(),
                 "backs": balance.backs.to_array(), "background": balance.background.to_array(),
@@ -165,6 +166,9 @@ impl Radiosity {
         }
         let mut lines = Lines::default();
         lines.add("patches", exchange.patches().len());
+        if self.subdivide > 0 {
+            lines.add("halved", self.told(halved));
+        }
         lines.add("shots", solver.state().shots);
         lines.add("unshot", format!("{:.3e} of what is emitted", balance.unshot_fraction()));
         let part = |power: DVec3| 100.0 * power.element_sum() / balance.emitted.element_sum();
@@ -179,6 +183,17 @@ impl Radiosity {
             lines.add("wrote", file.display());
         }
         print(&lines.0)
+    }
+
+    /// How many patches were uneven, time after time.
+    fn told(&self, halved: &[usize]) -> String {
+        let counts: Vec<String> = halved.iter().map(usize::to_string).collect();
+        let is_even = halved.len() < self.subdivide as usize;
+        match (counts.is_empty(), is_even) {
+            (true, _) => "none, as no patch is uneven".to_owned(),
+            (false, true) => format!("{} patches that were uneven; then none was", counts.join(", then ")),
+            (false, false) => format!("{} patches that were uneven; some may still be", counts.join(", then ")),
+        }
     }
 
     fn about(&self, error: &impl std::fmt::Display) -> Failure {

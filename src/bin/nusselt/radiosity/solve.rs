@@ -3,7 +3,7 @@
 use super::{Keep, Radiosity, Stage};
 use crate::failure::Failure;
 use crate::output::write_file;
-use crate::progress::Progress;
+use crate::progress::{Progress, SharedProgress};
 use nusselt::factors::{ExchangeOptions, PatchMesh};
 use nusselt::io::matrix::{MatrixError, MatrixJob, MatrixWriter};
 use nusselt::io::radiosity::{HalvingKey, KeptState, StateKey, read_state, write_state};
@@ -53,11 +53,11 @@ impl Work<'_> {
         Stage::of_mesh(mesh, self.exchange_options()).map_err(|error| self.asked.about(&error))
     }
 
-    /// Solves, and gives what there is in the end.
+    /// Solves, and gives what there is in the end: patches, their solution, and how many were halved each time, until none were uneven or it was as often as asked for.
     pub(super) fn solve<T>(
         &self,
         mut stage: Stage,
-        finish: impl FnOnce(&Stage, &Solver<'_>) -> Result<T, Failure>,
+        finish: impl FnOnce(&Stage, &Solver<'_>, &[usize]) -> Result<T, Failure>,
     ) -> Result<T, Failure> {
         let mut keeping = Keeping { key: self.key(&stage), halved: Vec::new() };
         let mut state = None;
@@ -86,11 +86,11 @@ impl Work<'_> {
                 self.keep(&keeping, &solver)?;
             }
             self.solve_stage(&keeping, &stage, &mut solver)?;
-            if keeping.halved.len() >= self.asked.subdivide as usize {
-                return finish(&stage, &solver);
-            }
-            let Some(Halved { mesh, parents, list }) = self.halved(&stage, &solver)? else {
-                return finish(&stage, &solver);
+            let is_last = keeping.halved.len() >= self.asked.subdivide as usize;
+            let halved = if is_last { None } else { self.halved(&stage, &solver)? };
+            let Some(Halved { mesh, parents, list }) = halved else {
+                let counts: Vec<usize> = keeping.halved.iter().map(Vec::len).collect();
+                return finish(&stage, &solver, &counts);
             };
             guess = Some(parents.into_iter().map(|parent| solver.radiosity()[parent]).collect());
             keeping.halved.push(list);
@@ -129,8 +129,11 @@ impl Work<'_> {
     /// Halves those patches on which the light changes; none if there are none.
     fn halved(&self, stage: &Stage, solver: &Solver<'_>) -> Result<Option<Halved>, Failure> {
         let gather = Gather::new(&stage.exchange, solver.emission(), solver.reflectance(), solver.radiosity());
-        let uneven = uneven_patches(&stage.patches, &stage.regions, &gather, self.asked.gradient)
+        let views = SharedProgress::new("views from corners", None, self.quiet);
+        let done = |count| views.add(count);
+        let uneven = uneven_patches(&stage.patches, &stage.regions, &gather, self.asked.gradient, &done)
             .map_err(|error| self.asked.about(&error))?;
+        drop(views);
         let list: Vec<u32> = (0..uneven.len() as u32).filter(|&patch| uneven[patch as usize]).collect();
         if list.is_empty() {
             return Ok(None);

@@ -132,11 +132,10 @@ impl Interreflection {
         common: &Common,
     ) -> Result<Solution, RadiosityError> {
         // What has no solution is not looked at.
-        Solver::new(scene, exchange, SolverOptions::default())?;
+        Gathered::check(scene, exchange)?;
         let progress = SharedProgress::new("rows", Some(exchange.patches().len()), common.quiet);
         let rows = exchange.viewed_rows(0.5 * longest, MOST_FACTORS, &|count| progress.add(count))?;
         drop(progress);
-        // Of surfaces that reflect nearly everything there may be a million.
         let mut progress = Progress::new("bounces", None, common.quiet);
         let Gathered { emission, radiosity, bounces } =
             Gathered::watched(scene, exchange, &rows, self.until, |left| {

@@ -5,7 +5,7 @@ mod lobe;
 mod plane;
 mod polar;
 
-use super::Number;
+use super::{Number, open, paper};
 use crate::brdf::{Brdf, Form, Place};
 use crate::contour::ContourImage;
 use glam::{DVec2, DVec3};
@@ -130,14 +130,9 @@ text{font:14px sans-serif;fill:#222}
 
 /// Opens a picture.
 fn begin(size: DVec2, title: &str, style: &str, out: &mut impl Write) -> io::Result<()> {
-    let (width, height) = (Number(size.x), Number(size.y));
-    writeln!(out, r#"<?xml version="1.0" encoding="UTF-8"?>"#)?;
-    writeln!(
-        out,
-        r#"<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" viewBox="0 0 {width} {height}">"#
-    )?;
+    open(size, out)?;
     writeln!(out, "<title>{title}</title>\n<style>\n{style}{STYLE}</style>")?;
-    writeln!(out, r#"<rect width="{width}" height="{height}" fill="white"/>"#)?;
+    paper(size, out)?;
     writeln!(out, r#"<text class="title" x="20" y="28">{title}</text>"#)
 }
 

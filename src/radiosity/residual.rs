@@ -1,0 +1,104 @@
+//! What is left of light that bounces, made least.
+
+use crate::factors::ViewedRows;
+use glam::DVec3;
+use std::collections::VecDeque;
+
+/// So many directions are remembered. Where exchange is symmetric one would do, but for rounding.
+const DIRECTIONS: usize = 8;
+
+/// A direction changes so little of what is left, by squares, that it is left alone: light of which all but 1e-12 comes back.
+const NOTHING: f64 = 1e-24;
+
+/// Solves `x = b + T x` for irradiances x, where T is one bounce (by form factors, of what is reflected), by generalized conjugate residuals: each step takes what is left, `r = b + T x - x`, as the direction, makes
+/// what that changes orthogonal to what the last ones did, and goes as far as makes r least. Colour channels are apart.
+///
+/// The measure is the sum of squares of r by weights. With weights D times the reflectance, where D are those of [`symmetric_weights`], T is symmetric, and it is as if all directions were remembered
+/// (conjugate residuals; Stiefel 1955): the steps are as many as T has eigenvalues that are apart, such as one near 1 for each closed room that is bright.
+pub(super) struct Residual {
+    weights: Vec<DVec3>,
+    solution: Vec<DVec3>,
+    left: Vec<DVec3>,
+    past: VecDeque<Direction>,
+}
+
+/// A direction that was gone in.
+struct Direction {
+    step: Vec<DVec3>,
+    /// What one step takes from what is left, and the sum of its squares; 0 in channels in which it was not gone.
+    change: Vec<DVec3>,
+    size: DVec3,
+}
+
+impl Residual {
+    /// From nothing: all of b is left.
+    pub(super) fn new(b: Vec<DVec3>, weights: Vec<DVec3>) -> Self {
+        Self { weights, solution: vec![DVec3::ZERO; b.len()], left: b, past: VecDeque::new() }
+    }
+
+    /// What is left.
+    pub(super) fn left(&self) -> &[DVec3] {
+        &self.left
+    }
+
+    /// Takes a step, given one bounce of what is left.
+    pub(super) fn reduce(&mut self, bounced: &[DVec3]) {
+        let whole: Vec<DVec3> = self.left.iter().zip(bounced).map(|(&r, &t)| r - t).collect();
+        let (mut step, mut change) = (self.left.clone(), whole.clone());
+        for past in &self.past {
+            let along = self.product(&change, &past.change) / past.size;
+            let along = DVec3::select(past.size.cmpgt(DVec3::ZERO), along, DVec3::ZERO);
+            step.iter_mut().zip(&past.step).for_each(|(own, &other)| *own -= along * other);
+            change.iter_mut().zip(&past.change).for_each(|(own, &other)| *own -= along * other);
+        }
+        let size = self.product(&change, &change);
+        let far = self.product(&self.left, &change) / size;
+        // Then it is one bounce that is added.
+        let is_plain = size.cmple(NOTHING * self.product(&self.left, &self.left));
+        for k in 0..self.left.len() {
+            self.solution[k] += DVec3::select(is_plain, self.left[k], far * step[k]);
+            self.left[k] -= DVec3::select(is_plain, whole[k], far * change[k]);
+        }
+        if self.past.len() == DIRECTIONS {
+            self.past.pop_front();
+        }
+        self.past.push_back(Direction { step, change, size: DVec3::select(is_plain, DVec3::ZERO, size) });
+    }
+
+    /// The solution, with what is left added: one bounce of it is all that is wrong then.
+    pub(super) fn into_solution(self) -> Vec<DVec3> {
+        self.solution.iter().zip(self.left).map(|(&x, r)| x + r).collect()
+    }
+
+    fn product(&self, a: &[DVec3], b: &[DVec3]) -> DVec3 {
+        self.weights.iter().zip(a.iter().zip(b)).map(|(&weight, (&a, &b))| weight * a * b).sum()
+    }
+}
+
+/// Weights D with `D_i F_ij = D_j F_ji`: areas, but for that rows are scaled to sum to 1. They follow from one factor to the next, as far as there are both of a pair; elsewhere they are areas.
+pub(super) fn symmetric_weights(rows: &ViewedRows, areas: &[f64]) -> Vec<f64> {
+    let mut weights = areas.to_vec();
+    let mut is_known = vec![false; areas.len()];
+    let mut queue = VecDeque::new();
+    for first in 0..areas.len() {
+        if std::mem::replace(&mut is_known[first], true) {
+            continue;
+        }
+        queue.push_back(first);
+        while let Some(patch) = queue.pop_front() {
+            for &(other, factor) in rows.row(patch) {
+                let other = other as usize;
+                if std::mem::replace(&mut is_known[other], true) {
+                    continue;
+                }
+                let back = rows.row(other).binary_search_by_key(&patch, |entry| entry.0 as usize);
+                let weight = back.map_or(0.0, |place| weights[patch] * factor / rows.row(other)[place].1);
+                if weight > 0.0 && weight.is_finite() {
+                    weights[other] = weight;
+                }
+                queue.push_back(other);
+            }
+        }
+    }
+    weights
+}
