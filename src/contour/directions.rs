@@ -267,6 +267,17 @@ impl Directions {
         self.push(definition, approx)
     }
 
+    /// How many directions there are.
+    pub(crate) fn count(&self) -> usize {
+        self.definitions.len()
+    }
+
+    /// Forgets all directions but the first ones, so many.
+    pub(crate) fn truncate(&mut self, count: usize) {
+        self.definitions.truncate(count);
+        self.approximations.truncate(count);
+    }
+
     #[inline]
     fn push(&mut self, definition: DirectionDef, approx: Approx3) -> DirectionId {
         self.definitions.push(definition);

@@ -246,6 +246,37 @@ impl Knife {
         [Span::from(middle, arcs), Span { start: start as u32, len: (middle - start) as u32 }]
     }
 
+    /// The same, but only the part in a half sphere.
+    #[inline]
+    pub(crate) fn cut_off(
+        &mut self,
+        skeleton: &Skeleton,
+        directions: &mut Directions,
+        arcs: &mut Vec<PolygonArc>,
+        polygon: Span,
+        half: HalfSphere,
+    ) -> Span {
+        let (circle, inside) = (half.circle(), half.inside());
+        let count = polygon.len as usize;
+        let Some([down, up]) = self.corners.passages(count) else {
+            let [negative, positive] = self.cut_any(skeleton, directions, arcs, polygon, circle, |_, _, _| None);
+            return if inside.is_positive() { positive } else { negative };
+        };
+        let (enters, leaves) = if inside.is_positive() { (up, down) } else { (down, up) };
+        let first = polygon.start as usize;
+        let [arc_in, arc_out] = [arcs[first + enters.at], arcs[first + leaves.at]];
+        let mut end = |passage: Passage, arc: PolygonArc, here: Sign| {
+            if passage.is_corner { arc.from } else { cross(skeleton, directions, &mut self.cache, arc, here, circle) }
+        };
+        let (from_in, from_out) = (end(enters, arc_in, -inside), end(leaves, arc_out, inside));
+        let start = arcs.len();
+        arcs.reserve(count + 2);
+        arcs.push(PolygonArc { from: from_in, along: arc_in.along });
+        copy_run(arcs, first, count, enters.beyond, leaves.last());
+        arcs.push(PolygonArc { from: from_out, along: half });
+        Span::from(start, arcs)
+    }
+
     /// The same for a polygon of any number of corners, some of which may be in one place.
     #[cold]
     fn cut_any(

@@ -111,12 +111,22 @@ pub(crate) enum Verdict {
     InFrontWithin(HalfSphere),
 }
 
+/// A part of a polygon that is put in, and where in the tree it is to go on.
+#[derive(Clone, Copy, Debug)]
+struct Part {
+    to: Link,
+    part: Span,
+    /// How many directions there were, and how many leaves it had filled, when the part was cut off.
+    directions: usize,
+    filled: usize,
+}
+
 /// Buffers that insertion needs.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Workspace {
     pub(crate) knife: Knife,
     arcs: Vec<PolygonArc>,
-    stack: Vec<(Link, Span)>,
+    parts: Vec<Part>,
     links: Vec<Link>,
     /// The leaves that the last insertion filled.
     pub(crate) filled: Vec<u32>,
@@ -270,6 +280,7 @@ impl ContourTree {
 
     /// Cuts a leaf in two of the same state; gives the leaves inside and outside of the half sphere. One of them
     /// is missing if the circle does not meet the leaf's interior. `known` is as for [`Knife::cut`].
+    #[inline]
     pub(crate) fn cut_leaf(
         &mut self,
         skeleton: &Skeleton,
@@ -313,54 +324,72 @@ impl ContourTree {
         work.arcs.clear();
         let whole = Span::keep(polygon, &mut work.arcs);
         work.filled.clear();
-        work.stack.clear();
-        work.stack.push((top, whole));
-        while let Some((link, part)) = work.stack.pop() {
-            let node = match self.descend(link, seen, filler.near, &mut work.visited) {
-                None => continue,
-                Some(Link::Leaf(leaf)) => {
-                    let Leaf { state, far, .. } = self.leaves[leaf as usize];
-                    let verdict = match state {
-                        LeafState::Filled(piece) if far > filler.near => {
-                            judge(&mut self.directions, &mut work.knife, piece, &work.arcs[part.range()])
-                        }
-                        LeafState::Open => Verdict::InFront,
-                        LeafState::Filled(_) | LeafState::Outside => Verdict::Behind,
-                    };
-                    let part = match verdict {
-                        Verdict::Behind => continue,
-                        Verdict::InFront => part,
-                        Verdict::InFrontWithin(half) => {
-                            let [negative, positive] = self.cut_part(skeleton, part, half.circle(), work);
-                            if half.inside().is_positive() { positive } else { negative }
-                        }
-                    };
-                    self.fill(skeleton, leaf, part, filler, work);
+        work.parts.clear();
+        work.parts.push(Part { to: top, part: whole, directions: self.directions.count(), filled: 0 });
+        while let Some(Part { to: mut link, mut part, directions, filled }) = work.parts.pop() {
+            if work.filled.len() == filled {
+                // Nothing was seen of what was cut since then: no cell has corners of it.
+                self.directions.truncate(directions);
+            }
+            while let Some(place) = self.descend(link, seen, filler.near, &mut work.visited) {
+                let node = match place {
+                    Link::Leaf(leaf) => {
+                        self.reach(skeleton, leaf, part, filler, &mut judge, work);
+                        break;
+                    }
+                    Link::Node(node) => self.nodes[node as usize],
+                };
+                let (circle, negative, positive) = (node.circle, node.negative(), node.positive());
+                let sides = &work.arcs[part.range()];
+                if let Some(side) = sides.iter().find(|arc| arc.along.circle() == circle) {
+                    link = if side.along.inside().is_positive() { positive } else { negative };
                     continue;
                 }
-                Some(Link::Node(node)) => node,
-            };
-            let node = self.nodes[node as usize];
-            let (circle, negative, positive) = (node.circle, node.negative(), node.positive());
-            let sides = &work.arcs[part.range()];
-            if let Some(side) = sides.iter().find(|arc| arc.along.circle() == circle) {
-                let child = if side.along.inside().is_positive() { positive } else { negative };
-                work.stack.push((child, part));
-                continue;
-            }
-            match work.knife.classify(skeleton, &self.directions, sides, circle) {
-                Sides { negative: false, .. } => work.stack.push((positive, part)),
-                Sides { positive: false, .. } => work.stack.push((negative, part)),
-                _ => {
-                    let parts = self.cut_part(skeleton, part, circle, work);
-                    for (child, part) in [negative, positive].into_iter().zip(parts) {
-                        if self.link_far(child) > filler.near {
-                            work.stack.push((child, part));
+                link = match work.knife.classify(skeleton, &self.directions, sides, circle) {
+                    Sides { negative: false, .. } => positive,
+                    Sides { positive: false, .. } => negative,
+                    _ => {
+                        let [below, above] = [negative, positive].map(|child| self.link_far(child) > filler.near);
+                        if below && above {
+                            let [other, rest] = self.cut_part(skeleton, part, circle, work);
+                            let (directions, filled) = (self.directions.count(), work.filled.len());
+                            work.parts.push(Part { to: negative, part: other, directions, filled });
+                            part = rest;
+                        } else {
+                            let side = if above { Sign::Positive } else { Sign::Negative };
+                            part = self.cut_off(skeleton, part, HalfSphere::new(circle, side), work);
                         }
+                        if above { positive } else { negative }
                     }
-                }
+                };
             }
         }
+    }
+
+    /// Fills the part of a leaf that a polygon within it covers, as far as `judge` takes it for that.
+    fn reach(
+        &mut self,
+        skeleton: &Skeleton,
+        leaf: u32,
+        part: Span,
+        filler: &Filler,
+        judge: &mut impl FnMut(&mut Directions, &mut Knife, PieceId, &[PolygonArc]) -> Verdict,
+        work: &mut Workspace,
+    ) {
+        let Leaf { state, far, .. } = self.leaves[leaf as usize];
+        let verdict = match state {
+            LeafState::Filled(piece) if far > filler.near => {
+                judge(&mut self.directions, &mut work.knife, piece, &work.arcs[part.range()])
+            }
+            LeafState::Open => Verdict::InFront,
+            LeafState::Filled(_) | LeafState::Outside => Verdict::Behind,
+        };
+        let part = match verdict {
+            Verdict::Behind => return,
+            Verdict::InFront => part,
+            Verdict::InFrontWithin(half) => self.cut_off(skeleton, part, half, work),
+        };
+        self.fill(skeleton, leaf, part, filler, work);
     }
 
     /// Goes down from a link as long as the box is certainly on one side: to a leaf, or to a node whose great circle may meet the box;
@@ -384,6 +413,11 @@ impl ContourTree {
     /// The two parts of a polygon that is put in and was classified last.
     fn cut_part(&mut self, skeleton: &Skeleton, part: Span, circle: CircleId, work: &mut Workspace) -> [Span; 2] {
         work.knife.cut(skeleton, &mut self.directions, &mut work.arcs, part, circle, |_, _, _| None)
+    }
+
+    /// The same, but only the part on one side.
+    fn cut_off(&mut self, skeleton: &Skeleton, part: Span, half: HalfSphere, work: &mut Workspace) -> Span {
+        work.knife.cut_off(skeleton, &mut self.directions, &mut work.arcs, part, half)
     }
 
     /// Fills the part of a leaf that a polygon within it covers.

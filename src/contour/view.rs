@@ -212,12 +212,14 @@ impl<'a> Sight<'a> {
         HalfSphere::new(self.circle(side.line), inside)
     }
 
+    #[inline]
     fn circle(&mut self, line: LineId) -> CircleId {
         let Self { skeleton, contour, buffers, .. } = self;
         let make = || contour.directions.push_line(skeleton, line, &mut buffers.work.knife.cache).0;
         CircleId(buffers.circles.of(line.0, make))
     }
 
+    #[inline]
     fn direction(&mut self, point: PointId) -> DirectionId {
         let Self { skeleton, contour, buffers, .. } = self;
         let make = || contour.directions.push_point(skeleton, point, &mut buffers.work.knife.cache).0;
