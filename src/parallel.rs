@@ -6,12 +6,12 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 /// The results of `f` for all items, in the order of the items. With the feature `parallel` the threads of the current `rayon` pool share
-/// the work.
+/// the work item by item: each is work enough for that, and some take much longer than others.
 pub(crate) fn map<T: Send, R: Send>(items: Vec<T>, f: impl Fn(T) -> R + Sync + Send) -> Vec<R> {
     #[cfg(feature = "parallel")]
     {
-        use rayon::iter::{IntoParallelIterator, ParallelIterator};
-        items.into_par_iter().map(f).collect()
+        use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
+        items.into_par_iter().with_max_len(1).map(f).collect()
     }
     #[cfg(not(feature = "parallel"))]
     items.into_iter().map(f).collect()

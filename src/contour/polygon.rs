@@ -362,8 +362,8 @@ mod tests {
 
     type Corner = ([u64; 3], HalfSphere);
 
-    /// The parts of a regular polygon around z, cut by a plane: fast where that is possible, and in the way that takes any polygon.
-    fn parts(count: usize, normal: DVec3) -> [[Vec<Corner>; 2]; 2] {
+    /// The parts of a regular polygon around z, cut by a plane: fast where that is possible, in the way that takes any polygon, and one by one.
+    fn parts(count: usize, normal: DVec3) -> [[Vec<Corner>; 2]; 3] {
         let corners = [[0.0, 0.0, 1.0], [1.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
         let scene = Scene::builder().mesh(&corners, &[vec![0, 1, 2]], Material::new("grey")).build().expect("a scene");
         let bvh = SceneBvh::build(&scene);
@@ -389,11 +389,13 @@ mod tests {
         let none = |_: &mut Directions, _: &mut ExactCache, _| None;
         let fast = knife.cut(skeleton, &mut directions, &mut arcs, polygon, circle, none);
         let any = knife.cut_any(skeleton, &mut directions, &mut arcs, polygon, circle, none);
+        let one_by_one = [Sign::Negative, Sign::Positive]
+            .map(|side| knife.cut_off(skeleton, &mut directions, &mut arcs, polygon, HalfSphere::new(circle, side)));
         for (part, sign) in fast.into_iter().zip([Sign::Negative, Sign::Positive]) {
             let here = knife.classify(skeleton, &directions, &arcs[part.range()], circle);
             assert_eq!(here, Sides { positive: sign.is_positive(), negative: sign.is_negative() });
         }
-        [fast, any].map(|parts| {
+        [fast, any, one_by_one].map(|parts| {
             parts.map(|part| {
                 let corner =
                     |arc: &PolygonArc| (directions.approximation(arc.from).v.to_array().map(f64::to_bits), arc.along);
@@ -407,12 +409,13 @@ mod tests {
     }
 
     #[test]
-    fn both_ways_to_cut_give_the_same_parts() {
+    fn all_ways_to_cut_give_the_same_parts() {
         let normals = [[1.0, 0.0, 0.0], [0.0, -1.0, 0.0], [1.0, 1.0, 0.0], [1.0, 2.0, 0.3], [0.1, -1.0, -0.05]];
         for count in [3, 4, 5, 7, 63, 64, 65, 100] {
             for normal in normals.map(DVec3::from) {
-                let [fast, any] = parts(count, normal);
+                let [fast, any, one_by_one] = parts(count, normal);
                 assert_eq!(fast, any, "{count} {normal}");
+                assert_eq!(fast, one_by_one, "{count} {normal}");
                 // Two ends of the cut, each in both parts, are new corners or old ones.
                 let new = fast.iter().map(Vec::len).sum::<usize>() - count;
                 assert!((2..=4).contains(&new), "{count} {normal}: {new}");

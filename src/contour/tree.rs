@@ -90,7 +90,7 @@ pub(crate) struct ContourTree {
     arcs: Vec<PolygonArc>,
 }
 
-/// What a polygon is put in for.
+/// What a polygon is put in for. Distances are Chebyshev's.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Filler {
     pub(crate) piece: PieceId,
@@ -325,7 +325,8 @@ impl ContourTree {
         let whole = Span::keep(polygon, &mut work.arcs);
         work.filled.clear();
         work.parts.clear();
-        work.parts.push(Part { to: top, part: whole, directions: self.directions.count(), filled: 0 });
+        let known = self.directions.count();
+        work.parts.push(Part { to: top, part: whole, directions: known, filled: 0 });
         while let Some(Part { to: mut link, mut part, directions, filled }) = work.parts.pop() {
             if work.filled.len() == filled {
                 // Nothing was seen of what was cut since then: no cell has corners of it.
@@ -363,6 +364,9 @@ impl ContourTree {
                     }
                 };
             }
+        }
+        if work.filled.is_empty() {
+            self.directions.truncate(known);
         }
     }
 
