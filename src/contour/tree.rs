@@ -113,7 +113,7 @@ pub(crate) enum Verdict {
 
 /// A part of a polygon that is put in, and where in the tree it is to go on.
 #[derive(Clone, Copy, Debug)]
-struct Part {
+struct Pending {
     to: Link,
     part: Span,
     /// How many directions there were, and how many leaves it had filled, when the part was cut off.
@@ -126,7 +126,7 @@ struct Part {
 pub(crate) struct Workspace {
     pub(crate) knife: Knife,
     arcs: Vec<PolygonArc>,
-    parts: Vec<Part>,
+    pending: Vec<Pending>,
     links: Vec<Link>,
     /// The leaves that the last insertion filled.
     pub(crate) filled: Vec<u32>,
@@ -324,10 +324,10 @@ impl ContourTree {
         work.arcs.clear();
         let whole = Span::keep(polygon, &mut work.arcs);
         work.filled.clear();
-        work.parts.clear();
+        work.pending.clear();
         let known = self.directions.count();
-        work.parts.push(Part { to: top, part: whole, directions: known, filled: 0 });
-        while let Some(Part { to: mut link, mut part, directions, filled }) = work.parts.pop() {
+        work.pending.push(Pending { to: top, part: whole, directions: known, filled: 0 });
+        while let Some(Pending { to: mut link, mut part, directions, filled }) = work.pending.pop() {
             if work.filled.len() == filled {
                 // Nothing was seen of what was cut since then: no cell has corners of it.
                 self.directions.truncate(directions);
@@ -354,7 +354,7 @@ impl ContourTree {
                         if below && above {
                             let [other, rest] = self.cut_part(skeleton, part, circle, work);
                             let (directions, filled) = (self.directions.count(), work.filled.len());
-                            work.parts.push(Part { to: negative, part: other, directions, filled });
+                            work.pending.push(Pending { to: negative, part: other, directions, filled });
                             part = rest;
                         } else {
                             let side = if above { Sign::Positive } else { Sign::Negative };

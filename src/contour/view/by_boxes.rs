@@ -304,7 +304,7 @@ fn gap(eye: DVec3, bounds: &Bounds) -> DVec3 {
 /// A lower bound on the distance to a box.
 ///
 /// What is nearer is told by Chebyshev's distance, the largest component: along each ray it grows like the usual one, it is as convex, and
-/// of a plane that an axis is normal to, like most of what is built, it is the same in all directions about that axis.
+/// on a plane that an axis is normal to, like most of what is built, it is the same wherever that component is the largest.
 fn distance_to_box(eye: DVec3, bounds: &Bounds) -> f64 {
     // Two steps are off by u relatively.
     let length = gap(eye, bounds).max_element() * (1.0 - 2.0 * U);
