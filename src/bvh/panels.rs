@@ -298,9 +298,10 @@ impl<F: Fn(PieceId, PieceId) -> bool> Joiner<'_, F> {
 
     /// Tells which way three points in a plane turn.
     fn turns(&self, plane: PlaneId, on: PointId) -> impl Fn([PointId; 3]) -> Sign {
-        let (normal, on) = (self.skeleton.approx_normal(plane).v, self.position(on));
-        // Any point off the plane will do: if this one were on it, all would be in line.
-        let off = on + normal / normal.abs().max_element() * on.abs().max_element().max(1e-100);
+        let axis = self.skeleton.approx_normal(plane).v.abs().max_position();
+        // Any point off the plane will do: if this one were on it, all would be in line. Towards 0, so that its coordinates are numbers.
+        let mut off = self.position(on);
+        off[axis] -= off.abs().max_element().max(1e-100).copysign(off[axis]);
         move |points| {
             let [p, q, r] = points.map(|point| self.position(point));
             orient3d(p, q, off, r)
@@ -476,5 +477,15 @@ mod tests {
         faces.push((more..more + 4).collect());
         let with_flap = sizes(&(vertices, faces));
         assert_eq!(with_flap, [4, 4, 4, 4, 4, 4, 1]);
+    }
+
+    /// Points off a plane have to be found where numbers end, too.
+    #[test]
+    fn pieces_are_joined_where_numbers_end() {
+        let far = f64::MAX;
+        let corners = [[-1.0, -2.0, far], [0.0, -2.0, far], [0.0, -1.0, far], [-1.0, -1.0, far]];
+        let faces = [vec![0, 1, 2], vec![0, 2, 3]];
+        let scene = Scene::builder().mesh(&corners, &faces, Material::new("far")).build().expect("a scene");
+        assert_eq!(SceneBvh::build(&scene).hierarchy.order.len(), 1);
     }
 }

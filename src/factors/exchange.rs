@@ -199,7 +199,7 @@ impl Exchange {
             }
         }
         let TooLarge { residue, estimates } = failure.unwrap_or(TooLarge { residue: 0.0, estimates: 0.0 });
-        let overlap = overlap(&self.facets, &self.elements);
+        let overlap = overlap(&self.facets, &self.elements, &self.shut);
         Err(ExchangeError::NotClosed { patch, residue, estimates, overlap })
     }
 

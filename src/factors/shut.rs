@@ -58,7 +58,7 @@ impl Shut {
     /// The convex parts of a part of a facet that are not shut.
     pub(super) fn open(&self, facet: u32, frame: &Frame, part: &[DVec2]) -> impl Iterator<Item = Vec<DVec2>> {
         let mut open = vec![part.iter().map(|&p| frame.lift(p)).collect()];
-        for region in &self.regions[facet as usize] {
+        for region in self.regions.get(facet as usize).into_iter().flatten() {
             take_out(&mut open, frame, region, 0.0);
         }
         open.into_iter().map(|part| part.into_iter().map(|p| frame.flat(p)).collect())
@@ -78,29 +78,23 @@ fn within(facet: &Facet) -> Option<Solid> {
 /// The facets that may see what another one shuts of a facet: what is in the other one's solid, if it is the outside of one, else all that is in front.
 fn seers(blockers: &Blockers<'_>, convex: &ConvexSolids, facet: u32, other: u32) -> Vec<u32> {
     let (facets, frames) = (blockers.facets, &blockers.elements.frames);
-    match within(&facets.all[other as usize]) {
-        Some(solid) => {
-            let (low, high) = (facets.placement.local(solid.bounds.low), facets.placement.local(solid.bounds.high));
-            let is_other = |&seer: &u32| facets.all[seer as usize].solid.is_none_or(|own| own.number != solid.number);
-            let is_in = |&seer: &u32| {
-                let ring = &facets.all[seer as usize].ring;
-                let is_before = |&side: &u32| ring.iter().all(|&p| frames[side as usize].height(p) >= -TOUCHES);
-                !convex.facets(solid).iter().any(is_before)
-            };
-            // What touches it is not in it.
-            let may_meet =
-                |from: DVec3, to: DVec3| (from + TOUCHES).cmplt(high).all() && (to - TOUCHES).cmpgt(low).all();
-            blockers.within(|seer| is_other(seer) && is_in(seer), may_meet)
-        }
-        None => {
-            let frame = &frames[facet as usize];
-            let is_other = |&seer: &u32| seer != other && seer != facet;
-            blockers.within(is_other, |low, high| {
-                let farthest = DVec3::select(frame.normal.cmpgt(DVec3::ZERO), high, low);
-                frame.height(farthest) > TOUCHES
-            })
-        }
-    }
+    let Some(solid) = within(&facets.all[other as usize]) else {
+        let frame = &frames[facet as usize];
+        let is_other = |&seer: &u32| seer != other && seer != facet;
+        return blockers.within(is_other, |low, high| {
+            let farthest = DVec3::select(frame.normal.cmpgt(DVec3::ZERO), high, low);
+            frame.height(farthest) > TOUCHES
+        });
+    };
+    let (low, high) = (facets.placement.local(solid.bounds.low), facets.placement.local(solid.bounds.high));
+    let is_in = |seer: u32| {
+        let Facet { ring, solid: own, .. } = &facets.all[seer as usize];
+        let is_before = |&side: &u32| ring.iter().all(|&p| frames[side as usize].height(p) >= -TOUCHES);
+        own.is_none_or(|own| own.number != solid.number) && !convex.facets(solid).iter().any(is_before)
+    };
+    // What touches it is not in it.
+    let may_meet = |from: DVec3, to: DVec3| (from + TOUCHES).cmplt(high).all() && (to - TOUCHES).cmpgt(low).all();
+    blockers.within(|&seer| is_in(seer), may_meet)
 }
 
 /// Solids that are convex, of few facets.

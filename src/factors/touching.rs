@@ -15,7 +15,7 @@ use super::row::Share;
 use super::seen::{LookSpace, SHUT};
 use super::shaft::Lies;
 use super::shape::{Frame, clip, double_area, sides, turn};
-use super::shut::shuts;
+use super::shut::{Shut, shuts};
 use crate::scene::PolygonId;
 use glam::{DVec2, DVec3};
 
@@ -53,12 +53,21 @@ pub(super) fn touching_facets(facets: &Facets, frames: &[Frame]) -> Vec<Vec<u32>
     found
 }
 
-/// Two polygons that show the same way and lie on each other, but not in one plane exactly: the first such pair.
-pub(super) fn overlap(facets: &Facets, elements: &Elements) -> Option<[PolygonId; 2]> {
+/// Two polygons that show the same way and lie on each other, but not in one plane exactly: the first such pair of what is not all shut.
+pub(super) fn overlap(facets: &Facets, elements: &Elements, shut: &Shut) -> Option<[PolygonId; 2]> {
     let mut first = None;
+    let is_open = |facet: usize| {
+        let frame = &elements.frames[facet];
+        let flat: Vec<DVec2> = facets.all[facet].ring.iter().map(|&p| frame.flat(p)).collect();
+        shut.open(facet as u32, frame, &flat).next().is_some()
+    };
     in_one_plane(facets, &elements.frames, |a, b| {
         let lies = facets.lies(a as u32, b as u32);
-        if elements.frames[a].normal.dot(elements.frames[b].normal) > 0.0 && lies != Lies::On {
+        if elements.frames[a].normal.dot(elements.frames[b].normal) > 0.0
+            && lies != Lies::On
+            && is_open(a)
+            && is_open(b)
+        {
             let pairs = elements.of_facet[a].iter().flat_map(|&i| elements.of_facet[b].iter().map(move |&j| (i, j)));
             let on_each_other = pairs.filter(|&(i, j)| common(elements, i, j).is_some());
             let polygon = |k: u32| elements.patches[elements.all[k as usize].patch as usize].polygon;
@@ -203,7 +212,7 @@ mod tests {
             let faces = [vec![0, 1, 2], vec![3, 4, 5]];
             let scene = Scene::builder().mesh(&corners, &faces, Material::new("grey")).build().expect("a scene");
             let exchange = Exchange::new(&scene, PatchPlan::Polygons, ExchangeOptions::default()).expect("patches");
-            overlap(&exchange.facets, &exchange.elements)
+            overlap(&exchange.facets, &exchange.elements, &exchange.shut)
         };
         let turn = DMat3::from_rotation_x(0.7) * DMat3::from_rotation_z(0.3);
         let over = [[0.3, 0.2, 0.0], [1.7, 0.4, 0.0], [0.6, 1.9, 0.0]];
