@@ -495,6 +495,12 @@ fn what_cannot_be_solved_is_refused() {
         let refused = made(material(0.5, dim / 3.0), material(0.5, dim));
         assert!(matches!(refused, Err(RadiosityError::TooDim { polygon: PolygonId(5) })), "{dim:e}: {refused:?}");
     }
+    // Areas may be too small for any power at all, which is not dark.
+    let tiny = [[0.0, 0.0, 0.0], [1e-170, 0.0, 0.0], [0.0, 1e-170, 0.0], [0.0, 0.0, 1e-170]];
+    let builder = Scene::builder().mesh(&tiny, &[vec![0, 1, 2]], material(0.5, 0.0));
+    let scene = builder.mesh(&tiny, &[vec![1, 2, 3]], material(0.5, 1.0)).build().expect("a scene");
+    let refused = Solver::new(&scene, &exchange(&scene, 1e-3), SolverOptions::default()).err();
+    assert_eq!(refused, Some(RadiosityError::TooDim { polygon: PolygonId(1) }));
     let scene = hollow(material(0.5, 0.0), material(0.5, 1e-298));
     let exchange_of_dim = exchange(&scene, 1e-3);
     let mut solver = Solver::new(&scene, &exchange_of_dim, SolverOptions::default()).expect("a solver");

@@ -7,10 +7,11 @@ mod tests;
 
 use super::{Picture, SizeError};
 use crate::contour::{Cell, CellId, ContourImage, Domain, Region, ViewFrame};
+use crate::parallel;
 use crate::scene::{PolygonId, Side};
 use glam::{DVec2, DVec3, UVec2};
 use knife::Knife;
-use overlay::overlay;
+use overlay::{Squares, overlay};
 use std::ops::Range;
 
 /// A part of a pixel: what is seen there of one side of one polygon, or of the background; of a flat mirror, as far as one side of one polygon is seen in it.
@@ -148,14 +149,26 @@ impl<'a> PixelParts<'a> {
             }
             parts.mirrored.push(mirrored);
         }
+        let ring = |parts: &Self, cell: Cell<'_>| -> Vec<DVec2> {
+            cell.boundary().map(|direction| parts.place(direction)).collect()
+        };
+        let mirror_of = |cell: CellId| of_cells.get(cell.index()).copied().flatten();
+        let squares: Vec<Squares> = parts.mirrored.iter().map(Squares::of).collect();
+        let mirrors = image.cells().filter_map(|cell| Some((cell, mirror_of(cell.id())?))).collect();
+        let mut overlaid = parallel::map(mirrors, |(cell, mirror)| {
+            overlay(&ring(&parts, cell), &parts.mirrored[mirror], &squares[mirror])
+        })
+        .into_iter();
         for cell in image.cells() {
-            let ring: Vec<DVec2> = cell.boundary().map(|direction| parts.place(direction)).collect();
-            let cell = cell.id().0;
-            match of_cells.get(cell as usize).copied().flatten() {
-                None => parts.add(Facet { cell, reflected: None }, ring),
+            let number = cell.id().0;
+            match mirror_of(cell.id()) {
+                None => {
+                    let ring = ring(&parts, cell);
+                    parts.add(Facet { cell: number, reflected: None }, ring);
+                }
                 Some(mirror) => {
-                    for (other, ring) in overlay(&ring, &parts.mirrored[mirror]) {
-                        parts.add(Facet { cell, reflected: Some((mirror as u32, other)) }, ring);
+                    for (other, ring) in overlaid.next().into_iter().flatten() {
+                        parts.add(Facet { cell: number, reflected: Some((mirror as u32, other)) }, ring);
                     }
                 }
             }

@@ -337,9 +337,10 @@ const ROOM: f64 = 1e6;
 
 /// Checks that something emits, and that numbers hold all of it, and the areas that it arrives at.
 fn check_power(patches: &[PatchInfo], emission: &[DVec3]) -> Result<(), RadiosityError> {
-    if emission.iter().all(|&emission| strength(emission) == 0.0) {
+    let emits = |&(patch, emission): &(&PatchInfo, &DVec3)| patch.shape.is_some() && *emission != DVec3::ZERO;
+    let Some((&PatchInfo { polygon: first, .. }, _)) = patches.iter().zip(emission).find(emits) else {
         return Err(RadiosityError::Dark);
-    }
+    };
     if let Some(&PatchInfo { polygon, .. }) = patches.iter().find(|patch| !patch.area.is_finite()) {
         return Err(RadiosityError::TooLarge { polygon });
     }
@@ -350,7 +351,7 @@ fn check_power(patches: &[PatchInfo], emission: &[DVec3]) -> Result<(), Radiosit
             return Err(RadiosityError::TooBright { polygon });
         }
     }
-    if sum > 0.0 { Ok(()) } else { Err(RadiosityError::Dark) }
+    if sum > 0.0 { Ok(()) } else { Err(RadiosityError::TooDim { polygon: first }) }
 }
 
 /// Below some 1e-308 numbers lose digits: each is off by 5e-324 at most, and so is a power by that times an area. With as many as 1e10 operations those are 5e-14 of all that is emitted.

@@ -73,8 +73,10 @@ impl Height {
             }
             SupportingPlane::Points(points) => {
                 let [a, b, c] = points.map(|v| scene.vertex(v));
-                let normal = (b - a).cross(c - a).normalize_or_zero();
-                (orient3d(a, b, c, p), normal.dot(p - a))
+                // Of lengths about 1, whose products are numbers whatever the unit; halves, as differences may be no numbers.
+                let unit = |v: DVec3| v / v.abs().max_element();
+                let [along, across] = [b, c].map(|q| unit(q * 0.5 - a * 0.5));
+                (orient3d(a, b, c, p), unit(along.cross(across)).dot(p * 0.5 - a * 0.5))
             }
         };
         Self { side: if is_front { side } else { -side }, height: height.abs() }

@@ -12,6 +12,8 @@ use rustc_hash::FxHashMap;
 
 /// So many planes of mirrors have an image of their own, those that take most of the view: each costs what a scene and a view do. In others what is seen is found point by point.
 const MOST_PLANES: usize = 16;
+/// So many pieces all copies of the scene have together at most, but for one copy: some 700 bytes each.
+const MOST_PIECES: usize = 2_000_000;
 
 /// What is seen in the mirrors of a camera's image.
 #[derive(Default)]
@@ -56,7 +58,7 @@ impl Mirrors {
         let mut planes: Vec<(PlaneId, f64, CellId)> =
             planes.into_iter().map(|(plane, (size, cell))| (plane, size, cell)).collect();
         planes.sort_unstable_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        planes.truncate(MOST_PLANES);
+        planes.truncate(MOST_PLANES.min(MOST_PIECES / scene.piece_count().max(1)).max(1));
         let found = parallel::map(planes, |(plane, _, cell)| {
             let view = MirrorView::new(shader, image.cell(cell), camera);
             view.map(|view| view.map(|view| (plane, view)))

@@ -2,17 +2,62 @@
 
 use super::PixelParts;
 use glam::DVec2;
+use std::ops::Range;
 
-/// The parts of a convex part of the picture in which cells of what a mirror shows are seen, with those cells. They tile it, but for rounding.
-pub(super) fn overlay(ring: &[DVec2], mirrored: &PixelParts<'_>) -> Vec<(u32, Vec<DVec2>)> {
-    let bands = mirrored.bands_of(ring);
-    let mut candidates: Vec<u32> = mirrored.bands[bands].iter().flatten().copied().collect();
-    candidates.sort_unstable();
-    candidates.dedup();
+/// Squares about as many as the facets of a picture, and which facets may reach into each: they tile the picture, so that these are few.
+pub(super) struct Squares {
+    /// How many there are either way.
+    count: usize,
+    /// Of a picture, in pixels.
+    size: DVec2,
+    facets: Vec<Vec<u32>>,
+}
+
+impl Squares {
+    /// Not more either way.
+    const MOST: usize = 1024;
+
+    pub(super) fn of(parts: &PixelParts<'_>) -> Self {
+        let count = parts.facets.len().isqrt().clamp(1, Self::MOST);
+        let mut found = Self { count, size: parts.size.as_dvec2(), facets: vec![Vec::new(); count * count] };
+        for facet in 0..parts.facets.len() as u32 {
+            let [columns, rows] = found.reached(parts.ring(facet));
+            for row in rows {
+                for square in columns.clone() {
+                    found.facets[row * count + square].push(facet);
+                }
+            }
+        }
+        found
+    }
+
+    /// The facets that may meet a ring, ascending.
+    fn meeting(&self, ring: &[DVec2]) -> Vec<u32> {
+        let [columns, rows] = self.reached(ring);
+        let squares =
+            rows.map(|row| row * self.count).flat_map(|row| &self.facets[row + columns.start..row + columns.end]);
+        let mut facets: Vec<u32> = squares.flatten().copied().collect();
+        facets.sort_unstable();
+        facets.dedup();
+        facets
+    }
+
+    /// The columns and the rows that a ring may reach into; beyond the picture, the nearest.
+    fn reached(&self, ring: &[DVec2]) -> [Range<usize>; 2] {
+        let (low, high) = extent(ring);
+        // What is not a number is 0.
+        let place = |at: f64, size: f64| ((at / size * self.count as f64) as usize).min(self.count - 1);
+        let range = |low: f64, high: f64, size: f64| place(low, size)..place(high, size) + 1;
+        [range(low.x, high.x, self.size.x), range(low.y, high.y, self.size.y)]
+    }
+}
+
+/// The parts of a convex part of the picture in which cells of what a mirror shows are seen, with those cells. They tile it, but for rounding. `squares` are those of what it shows.
+pub(super) fn overlay(ring: &[DVec2], mirrored: &PixelParts<'_>, squares: &Squares) -> Vec<(u32, Vec<DVec2>)> {
     let (low, high) = extent(ring);
     let mut parts = Vec::new();
     let mut rest = Vec::new();
-    for facet in candidates {
+    for facet in squares.meeting(ring) {
         let other = mirrored.ring(facet);
         let (its_low, its_high) = extent(other);
         if its_low.cmpge(high).any() || its_high.cmple(low).any() {

@@ -26,7 +26,9 @@ fn both_sides_of_a_plane_make_the_scene() {
                         let p: Vec<DVec3> = scene.piece(piece).points().collect();
                         (1..p.len() - 1).map(|k| (p[k] - p[0]).cross(p[k + 1] - p[0])).sum::<DVec3>()
                     };
-                    assert!(normal(&part, piece.id()).dot(normal(&scene, of)) > 0.0);
+                    let along = normal(&part, piece.id()).dot(normal(&scene, of).normalize());
+                    // Corners are rounded by 1e-16 times lengths up to 10: thinner slivers may be turned.
+                    assert!(along > -1e-15, "{along:e} of {:e}", normal(&scene, of).length());
                     for p in piece.points() {
                         let Height { side, height } = Height::of(&scene, *plane, is_front, p);
                         assert!(!side.is_negative() || height < 1e-14, "{p} is {height} behind");
@@ -45,4 +47,24 @@ fn both_sides_of_a_plane_make_the_scene() {
         }
     }
     assert!(cut > 100, "{cut}");
+}
+
+/// Whatever the unit: products of lengths are no numbers here.
+#[test]
+fn scaled_scenes_are_cut_at_the_same_places() {
+    let scaled = |exponent: i32| {
+        let unit = 2f64.powi(exponent);
+        let corners = [[0., 0., 0.], [4., 1., 0.3], [1., 3., 2.], [-1., 0., 1.], [3., 0.5, 2.], [2., 3., -1.]];
+        let corners: Vec<[f64; 3]> = corners.iter().map(|p| p.map(|x| x * unit)).collect();
+        let faces = [vec![0, 1, 2], vec![3, 4, 5]];
+        let scene = Scene::builder().mesh(&corners, &faces, Material::new("any")).build().unwrap();
+        let plane = scene.pieces().next().unwrap().plane();
+        let (part, _) = before(&scene, plane, true).unwrap();
+        part.vertices().iter().map(|&p| p / unit).collect::<Vec<_>>()
+    };
+    let expected = scaled(0);
+    assert!(expected.len() >= 3);
+    for exponent in [-500, -270, 255, 500, 1020] {
+        assert_eq!(scaled(exponent), expected, "2^{exponent}");
+    }
 }
