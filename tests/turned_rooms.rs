@@ -207,3 +207,51 @@ fn overlapping_solids_exchange_with_a_room_what_their_union_does() {
         }
     }
 }
+
+/// A wall in line with the face of a block, as facades of a row of houses are: rounding puts each before or behind the plane of the other.
+#[test]
+fn a_wall_in_line_with_a_block_sees_what_it_does_in_a_straight_room() {
+    let wall = [[2.5, 1.0, 0.0], [3.5, 1.0, 0.0], [3.5, 1.0, 1.0], [2.5, 1.0, 1.0]];
+    let row = |turn: DMat3| {
+        let corners = wall.map(|p| (turn * DVec3::from(p)).to_array());
+        // Two triangles, as its corners need not be in one plane.
+        let scene = built(room(turn).mesh(&corners, &[vec![0, 1, 2], vec![0, 2, 3]], grey()));
+        let options = ExchangeOptions { tolerance: TOLERANCE, ..ExchangeOptions::default() };
+        let exchange = Exchange::new(&scene, PatchPlan::Polygons, options).expect("patches");
+        [12, 13].map(|patch| exchange.row(patch).expect("a row that closes"))
+    };
+    let straight = row(DMat3::IDENTITY);
+    for k in 0..24 {
+        let turned = row(DMat3::from_rotation_z(0.1 + 0.25 * f64::from(k)) * DMat3::from_rotation_x(f64::from(k % 3)));
+        for ((a, b), column) in straight.iter().zip(&turned).flat_map(|pair| (0..14).map(move |column| (pair, column)))
+        {
+            let [found, expected] = [factor(b, column), factor(a, column)];
+            assert!((found - expected).abs() <= 2.0 * TOLERANCE, "{k}: {column}: {found} {expected}");
+        }
+    }
+}
+
+/// A cube's walls see each other, by the catalogues of view factors, if it is in a building and touches the inside of its walls, or is their lining.
+#[test]
+fn a_room_within_a_solid_is_not_shut_by_it() {
+    let unit: Vec<[f64; 3]> = (0..8).map(|k| [k & 1, k >> 1 & 1, k >> 2 & 1].map(f64::from)).collect();
+    let inside = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let outside = inside.map(|face| face.into_iter().rev().collect::<Vec<usize>>());
+    let inside = inside.map(|face| face.to_vec());
+    // A building that begins where the cube does, at x = 0, and the cube itself.
+    for building in [|[x, y, z]: [f64; 3]| [3.0 * x, 3.0 * y - 1.0, 3.0 * z - 1.0], |p: [f64; 3]| p] {
+        let walls: Vec<[f64; 3]> = unit.iter().copied().map(building).collect();
+        let scene = built(Scene::builder().mesh(&walls, &outside, grey()).mesh(&unit, &inside, grey()));
+        let options = ExchangeOptions { tolerance: 1e-5, ..ExchangeOptions::default() };
+        let exchange = Exchange::new(&scene, PatchPlan::Polygons, options).expect("patches");
+        // The wall at x = 0: that of the building sees nothing but sky, that of the cube the one across and four beside it.
+        let outer = exchange.row(4).expect("a row that closes");
+        assert!((outer.background.factor - 1.0).abs() < 1e-9, "{outer:?}");
+        let inner = exchange.row(10).expect("a row that closes");
+        for (column, expected) in [(11, 0.199_825), (6, 0.200_044), (7, 0.200_044), (8, 0.200_044), (9, 0.200_044)] {
+            // To the digits given, and the tolerance.
+            let found = factor(&inner, column);
+            assert!((found - expected).abs() < 1.1e-5, "{column}: {found} {expected}");
+        }
+    }
+}

@@ -187,9 +187,16 @@ impl Surface<'_> {
     /// The side that faces the inside, by the sign of the volume, if rounding leaves no doubt.
     fn inside(&self) -> Option<Side> {
         let from = self.scene.piece(*self.pieces.first()?).points().next()?;
+        let all = || self.pieces.iter().flat_map(|&piece| self.scene.piece(piece).points());
+        let most = all().fold(0.0, |most: f64, p| most.max((p - from).abs().max_element()));
+        // A power of two, so that nothing is rounded and products are numbers.
+        let unit = f64::from_bits(most.to_bits() & f64::INFINITY.to_bits());
+        if !(unit.is_normal() && (1.0 / unit).is_normal()) {
+            return None;
+        }
         let (mut volume, mut size, mut terms) = (0.0, 0.0, 0.0);
         for &piece in self.pieces {
-            let points: Vec<DVec3> = self.scene.piece(piece).points().map(|p| p - from).collect();
+            let points: Vec<DVec3> = self.scene.piece(piece).points().map(|p| (p - from) / unit).collect();
             for k in 2..points.len() {
                 let [a, b, c] = [points[0], points[k - 1], points[k]];
                 volume += a.dot(b.cross(c));
@@ -341,6 +348,15 @@ mod tests {
 
     fn built(vertices: &[[f64; 3]], faces: &[Vec<usize>]) -> Scene {
         Scene::builder().mesh(vertices, faces, Material::new("grey")).build().expect("the mesh is a scene")
+    }
+
+    /// Volumes of these are no numbers, or 0.
+    #[test]
+    fn boxes_of_any_size_are_solids() {
+        for size in [1e150, 1e-150, 1e300, 1e-300] {
+            let (vertices, faces) = cuboid([0.0; 3], [size; 3]);
+            assert_eq!(SceneBvh::build(&built(&vertices, &faces)).solid_pieces(), 6, "{size:e}");
+        }
     }
 
     #[test]

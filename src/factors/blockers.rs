@@ -213,19 +213,18 @@ impl Blockers<'_> {
     /// An element in parts between the lines where facets stand on it or pass through it.
     pub(super) fn parts(&self, element: &Element) -> Vec<Vec<DVec3>> {
         let frame = &self.elements.frames[element.facet as usize];
-        parts(element, frame, &self.contacts(element))
-    }
-
-    /// Where facets stand on an element or pass through it, in its plane; some of the segments may be beside it.
-    pub(super) fn contacts(&self, element: &Element) -> Vec<[DVec2; 2]> {
         // Corners of a mesh are rounded.
         let reach = element.radius * (1e-12 + element.rounding) + TOUCHES;
-        let low = element.ring.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)) - reach;
-        let high = element.ring.iter().fold(DVec3::NEG_INFINITY, |high, &p| high.max(p)) + reach;
+        parts(element, frame, &self.contacts(element.facet, &element.ring, reach))
+    }
+
+    /// Where facets stand on a part of a facet or pass through it, in its plane, if they are not farther from it than that; some of the segments may be beside it.
+    pub(super) fn contacts(&self, facet: u32, ring: &[DVec3], reach: f64) -> Vec<[DVec2; 2]> {
+        let low = ring.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)) - reach;
+        let high = ring.iter().fold(DVec3::NEG_INFINITY, |high, &p| high.max(p)) + reach;
         let others =
             self.within(|_| true, |other_low, other_high| low.cmple(other_high).all() && high.cmpge(other_low).all());
-        let frame = &self.elements.frames[element.facet as usize];
-        contacts(element.facet, self.facets, frame, &others)
+        contacts(facet, self.facets, &self.elements.frames[facet as usize], &others)
     }
 
     /// The facets that may block light between an element and a whole facet, ascending.

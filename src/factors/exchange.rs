@@ -93,7 +93,11 @@ impl Exchange {
         let touching = touching_facets(&facets, &elements.frames);
         // Where backs count, those of what stands there are seen.
         let shut = match options.sides {
-            Sides::Fronts => Shut::of(&Blockers { facets: &facets, elements: &elements, trees: &trees }, &touching),
+            Sides::Fronts => {
+                let (facets, elements, trees) = (&facets, &elements, &trees[..]);
+                let looker = Looker { facets, elements, trees, shut: &Shut::default(), sides: options.sides };
+                Shut::of(&Blockers { facets, elements, trees }, &looker, &touching)?
+            }
             Sides::Both => Shut::default(),
         };
         Ok(Self { facets, elements, trees, touching, shut, options, patches })

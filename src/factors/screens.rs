@@ -34,6 +34,8 @@ struct Face {
     /// True if some of what it hides may be on the near side of its plane.
     cuts: bool,
     facet: u32,
+    /// Where the element that is looked from is, if all of it is on one side: rounding is not asked, then.
+    own: Lies,
 }
 
 impl Face {
@@ -41,6 +43,16 @@ impl Face {
     #[inline]
     fn height(&self, at: DVec3) -> f64 {
         self.normal.dot(at) + self.offset
+    }
+
+    /// True if a point of the element is in front of it.
+    #[inline]
+    fn is_before(&self, at: DVec3) -> bool {
+        match self.own {
+            Lies::Front => true,
+            Lies::Behind => false,
+            Lies::On | Lies::Across => self.height(at) > 0.0,
+        }
     }
 }
 
@@ -134,7 +146,7 @@ impl Screens {
         self.corners.extend(ring.iter().map(|&p| frame.local(p)));
         let lies = (facets.lies_of(from, facet), facets.lies(to.facet, facet));
         let cuts = !matches!(lies, (Lies::Front, Lies::Behind) | (Lies::Behind, Lies::Front));
-        self.add_face(frame, &elements.frames[facet as usize], facet, cuts);
+        self.add_face(frame, &elements.frames[facet as usize], facet, cuts, lies.0);
         let count = ring.len() as u32;
         let edge = |k: u32| Edge {
             ends: [corners + k, corners + if k + 1 == count { 0 } else { k + 1 }],
@@ -164,7 +176,7 @@ impl Screens {
                 return;
             }
             *number = (self.faces.len() as u32 - faces, own);
-            self.add_face(frame, &elements.frames[facet as usize], facet, its != Lies::Behind);
+            self.add_face(frame, &elements.frames[facet as usize], facet, its != Lies::Behind, own);
         }
         self.corners.extend(body.corners.iter().map(|&p| frame.local(p)));
         for edge in &body.edges {
@@ -179,9 +191,9 @@ impl Screens {
         self.all.push(Screen { faces, edges, is_flat: false });
     }
 
-    fn add_face(&mut self, frame: &Frame, plane: &Frame, facet: u32, cuts: bool) {
+    fn add_face(&mut self, frame: &Frame, plane: &Frame, facet: u32, cuts: bool, own: Lies) {
         let (normal, offset) = (frame.turned(plane.normal), plane.height(frame.origin));
-        self.faces.push(Face { normal, offset, cuts, facet });
+        self.faces.push(Face { normal, offset, cuts, facet, own });
     }
 
     /// Finds the half planes that a screen's shadow is in, seen from a point, relative to whose foot they are; false if one of them has all these corners of what
@@ -246,7 +258,7 @@ struct View<'a> {
 impl View<'_> {
     #[inline]
     fn is_in_front(&self, face: u32) -> bool {
-        self.faces.get(face as usize).is_some_and(|face| face.height(self.at) > 0.0)
+        self.faces.get(face as usize).is_some_and(|face| face.is_before(self.at))
     }
 
     /// What is behind the plane of a face, if that is seen and it matters.
@@ -256,10 +268,10 @@ impl View<'_> {
             return None;
         }
         let height = face.height(self.at);
-        let sign = if height > 0.0 { -1.0 } else { 1.0 };
+        let is_before = face.is_before(self.at);
+        let sign = if is_before { -1.0 } else { 1.0 };
         let offset = height - face.normal.z * self.at.z;
-        (self.is_flat || height > 0.0)
-            .then(|| HalfPlane { along: sign * face.normal.truncate(), offset: sign * offset })
+        (self.is_flat || is_before).then(|| HalfPlane { along: sign * face.normal.truncate(), offset: sign * offset })
     }
 
     /// What is inside of an edge, if it is part of the outline: the point is in front of one of the faces beside it.

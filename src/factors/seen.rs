@@ -146,36 +146,48 @@ impl Looker<'_> {
         Ok(())
     }
 
-    /// True if nothing is seen from the point of a facet's front nearest to `point` but backs, and fronts where they are face to face with others; `touching` has
-    /// for each facet those that it is face to face with.
+    /// True if nothing is seen from the point of a facet's front nearest to `point` but backs, and fronts where they are face to face with others, not all of which are others'; or if a back
+    /// of `solid` is seen. `touching` has for each facet those that it is face to face with.
     pub(super) fn is_shut(
         &self,
         space: &mut LookSpace,
         facet: u32,
         point: DVec3,
         touching: &[Vec<u32>],
+        solid: Option<u32>,
     ) -> Result<bool, ExchangeError> {
         let LookSpace { view, corners, flat, .. } = space;
         let (viewpoint, image) = self.view(view, facet, point)?;
         let receiver = Receiver::new(self.elements.frames[facet as usize].normal);
-        let mut open = 0.0;
+        // What shuts it, of that the inside of the solid, and what does not.
+        let (mut shut, mut inside, mut open) = (0.0, 0.0, 0.0);
         for cell in image.cells() {
-            let is_shut = match (cell.polygon(), cell.side()) {
+            let mut share = || receiver.factor_of(cell.boundary(), corners);
+            match (cell.polygon(), cell.side()) {
                 (Some(seen), Some(Side::Front)) => {
                     let touching = &touching[seen.index()];
                     // In one plane fronts win over the backs of what they stand on.
-                    touching.contains(&facet) || {
-                        flatten(cell, viewpoint.eye(), &self.elements.frames[seen.index()], flat);
-                        self.cover(touching, seen.0, flat)
+                    if touching.contains(&facet) {
+                        shut += share();
+                        continue;
+                    }
+                    flatten(cell, viewpoint.eye(), &self.elements.frames[seen.index()], flat);
+                    if !self.cover(touching, seen.0, flat) {
+                        open += share();
                     }
                 }
-                (seen, _) => seen.is_some(),
-            };
-            if !is_shut {
-                open += receiver.factor_of(cell.boundary(), corners);
+                (Some(seen), _) => {
+                    let share = share();
+                    shut += share;
+                    let of = self.facets.all[seen.index()].solid.map(|solid| solid.number);
+                    if solid.is_some() && of == solid {
+                        inside += share;
+                    }
+                }
+                (None, _) => open += share(),
             }
         }
-        Ok(open <= SHUT)
+        Ok(inside > SHUT || open <= SHUT && shut > SHUT)
     }
 
     /// True if facets that are face to face with another one cover all of a part of it together.

@@ -3,12 +3,16 @@
 //! Nothing gets there but from the other one of the two, and nothing else is to count as seeing it. Solids that overlap, as an annex that reaches into a building, have walls within each other from
 //! which it is seen all the same: what they see there are backs.
 
+use super::ExchangeError;
 use super::blockers::Blockers;
 use super::bodies::MOST_FACETS;
 use super::contacts::{TOUCHES, take_out};
 use super::facets::{Facet, Facets};
+use super::seen::{LookSpace, Looker};
 use super::shape::Frame;
+use super::touching::{apart, in_both, middle, within};
 use crate::bvh::Solid;
+use crate::parallel;
 use crate::scene::Side;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
@@ -16,25 +20,61 @@ use std::collections::HashMap;
 /// For each facet.
 #[derive(Default)]
 pub(super) struct Shut {
-    /// What is shut of it, in its frame, counter-clockwise.
-    regions: Vec<Vec<Vec<DVec2>>>,
+    /// What is shut of it, in its frame, counter-clockwise, and by which other one; all of what the two have in common is in one ring, that of the other one.
+    regions: Vec<Vec<Region>>,
     /// The facets of which it may see what is shut, ascending.
     seen: Vec<Vec<u32>>,
 }
 
+#[derive(Clone)]
+struct Region {
+    by: u32,
+    ring: Vec<DVec2>,
+    /// True if the ring is that of the other facet.
+    is_whole: bool,
+}
+
 impl Shut {
     /// `touching` has for each facet those that it is face to face with.
-    pub(super) fn of(blockers: &Blockers<'_>, touching: &[Vec<u32>]) -> Self {
+    ///
+    /// In front of what stands face to face with the outside of a solid there is the inside of that, but there may be something else in it, such as a room of a building. So a part of the two is shut if, from its middle, one of them sees
+    /// a back of the other one's solid, or nothing that would be open.
+    pub(super) fn of(
+        blockers: &Blockers<'_>,
+        looker: &Looker<'_>,
+        touching: &[Vec<u32>],
+    ) -> Result<Self, ExchangeError> {
         let (facets, frames) = (blockers.facets, &blockers.elements.frames);
+        let pairs: Vec<[u32; 2]> = (0..)
+            .zip(touching)
+            .flat_map(|(a, others)| others.iter().filter(move |&&b| a < b).map(move |&b| [a, b]))
+            .filter(|&[a, b]| shuts(facets, a, b))
+            .collect();
+        let shut = parallel::map(pairs, |pair| {
+            shut_parts(blockers, looker, touching, pair).map(|(parts, is_all)| (pair, parts, is_all))
+        });
         let convex = ConvexSolids::of(facets, frames);
         let mut found = Self { regions: vec![Vec::new(); touching.len()], seen: vec![Vec::new(); touching.len()] };
-        for (number, others) in (0..).zip(touching) {
-            for &other in others.iter().filter(|&&other| shuts(facets, number, other)) {
-                let frame = &frames[number as usize];
-                let ring = facets.all[other as usize].ring.iter().rev().map(|&p| frame.flat(p)).collect();
-                found.regions[number as usize].push(ring);
-                for seer in seers(blockers, &convex, number, other) {
-                    found.seen[seer as usize].push(number);
+        for shut in shut {
+            let ([a, b], parts, is_whole) = shut?;
+            if parts.is_empty() {
+                continue;
+            }
+            for [own, by] in [[a, b], [b, a]] {
+                let frame = &frames[own as usize];
+                let flat = |ring: &[DVec3]| -> Vec<DVec2> { ring.iter().map(|&p| frame.flat(p)).collect() };
+                let reversed = |mut ring: Vec<DVec2>| {
+                    ring.reverse();
+                    ring
+                };
+                let rings = if is_whole {
+                    vec![reversed(flat(&facets.all[by as usize].ring))]
+                } else {
+                    parts.iter().map(|part| if own == a { flat(part) } else { reversed(flat(part)) }).collect()
+                };
+                found.regions[own as usize].extend(rings.into_iter().map(|ring| Region { by, ring, is_whole }));
+                for seer in seers(blockers, &convex, own, by) {
+                    found.seen[seer as usize].push(own);
                 }
             }
         }
@@ -42,7 +82,23 @@ impl Shut {
             facets.sort_unstable();
             facets.dedup();
         }
-        found
+        Ok(found)
+    }
+
+    /// The parts of what two elements of these facets have in common that are shut, and whether it is all; as it is in the frame of the first of the facets.
+    pub(super) fn parts(&self, [own, by]: [u32; 2], frame: &Frame, common: Vec<DVec3>) -> (Vec<Vec<DVec3>>, bool) {
+        let flat: Vec<DVec2> = common.iter().map(|&p| frame.flat(p)).collect();
+        let mut parts = Vec::new();
+        for region in self.regions[own as usize].iter().filter(|region| region.by == by) {
+            if region.is_whole {
+                return (vec![common], true);
+            }
+            let part = within(flat.clone(), &region.ring);
+            if part.len() >= 3 {
+                parts.push(part.into_iter().map(|p| frame.lift(p)).collect());
+            }
+        }
+        (parts, false)
     }
 
     /// True if one of two facets may see what is shut of the other.
@@ -59,26 +115,54 @@ impl Shut {
     pub(super) fn open(&self, facet: u32, frame: &Frame, part: &[DVec2]) -> impl Iterator<Item = Vec<DVec2>> {
         let mut open = vec![part.iter().map(|&p| frame.lift(p)).collect()];
         for region in self.regions.get(facet as usize).into_iter().flatten() {
-            take_out(&mut open, frame, region, 0.0);
+            take_out(&mut open, frame, &region.ring, 0.0);
         }
         open.into_iter().map(|part| part.into_iter().map(|p| frame.flat(p)).collect())
     }
 }
 
-/// True if one of two facets face to face is the outside of a solid: what they have in common is shut, then.
+/// True if one of two facets face to face is the outside of a solid: what of them is shut is known of facets as a whole, then.
 pub(super) fn shuts(facets: &Facets, a: u32, b: u32) -> bool {
-    [a, b].into_iter().any(|facet| within(&facets.all[facet as usize]).is_some())
+    [a, b].into_iter().any(|facet| solid_within(&facets.all[facet as usize]).is_some())
+}
+
+/// The parts of what two facets have in common that are shut, and whether it is all.
+fn shut_parts(
+    blockers: &Blockers<'_>,
+    looker: &Looker<'_>,
+    touching: &[Vec<u32>],
+    pair: [u32; 2],
+) -> Result<(Vec<Vec<DVec3>>, bool), ExchangeError> {
+    let [facet, other] = pair.map(|number| &blockers.facets.all[number as usize]);
+    let frames = pair.map(|number| &blockers.elements.frames[number as usize]);
+    let flat: Vec<DVec2> = facet.ring.iter().map(|&p| frames[0].flat(p)).collect();
+    let Some(common) = in_both((&flat, frames[0]), (&other.ring, frames[1])) else { return Ok((Vec::new(), false)) };
+    let parts = apart(blockers, pair, common);
+    let count = parts.len();
+    let (mut shut, mut space) = (Vec::new(), LookSpace::default());
+    for part in parts {
+        let middle = middle(&part);
+        let mut is_shut = |from: u32, by: &Facet| match solid_within(by) {
+            Some(solid) => looker.is_shut(&mut space, from, middle, touching, Some(solid.number)),
+            None => Ok(false),
+        };
+        if is_shut(pair[0], other)? || is_shut(pair[1], facet)? {
+            shut.push(part);
+        }
+    }
+    let is_all = shut.len() == count;
+    Ok((shut, is_all))
 }
 
 /// The solid that a facet is the outside of.
-fn within(facet: &Facet) -> Option<Solid> {
+fn solid_within(facet: &Facet) -> Option<Solid> {
     facet.solid.filter(|solid| solid.inside == Side::Back)
 }
 
 /// The facets that may see what another one shuts of a facet: what is in the other one's solid, if it is the outside of one, else all that is in front.
 fn seers(blockers: &Blockers<'_>, convex: &ConvexSolids, facet: u32, other: u32) -> Vec<u32> {
     let (facets, frames) = (blockers.facets, &blockers.elements.frames);
-    let Some(solid) = within(&facets.all[other as usize]) else {
+    let Some(solid) = solid_within(&facets.all[other as usize]) else {
         let frame = &frames[facet as usize];
         let is_other = |&seer: &u32| seer != other && seer != facet;
         return blockers.within(is_other, |low, high| {
@@ -104,7 +188,7 @@ impl ConvexSolids {
     fn of(facets: &Facets, frames: &[Frame]) -> Self {
         let mut all: HashMap<u32, Vec<u32>> = HashMap::new();
         for (number, facet) in (0..).zip(&facets.all) {
-            if let Some(solid) = within(facet) {
+            if let Some(solid) = solid_within(facet) {
                 all.entry(solid.number).or_default().push(number);
             }
         }

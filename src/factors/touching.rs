@@ -6,6 +6,7 @@
 
 use super::ExchangeError;
 use super::Sides;
+use super::blockers::Blockers;
 use super::contacts::{TOUCHES, cut, take_out};
 use super::element::{Element, Elements};
 use super::element_row::ElementRows;
@@ -105,85 +106,118 @@ impl ElementRows<'_> {
             return Ok(found);
         }
         for &facet in &self.touching[from.facet as usize] {
-            let is_solid = shuts(self.blockers.facets, from.facet, facet);
             for &other in &elements.of_facet[facet as usize] {
                 let [i, j] = [number.min(other), number.max(other)];
                 let Some(whole) = common(elements, i, j) else { continue };
-                let mut touch = Touch { other, exchange: Share::default(), rings: Vec::new() };
-                let parts = if is_solid { vec![whole] } else { self.apart(i, j, whole) };
-                let count = parts.len();
-                for part in parts {
-                    let middle = part.iter().sum::<DVec3>() / part.len() as f64;
-                    if is_solid || self.is_shut(i, middle, space)? || self.is_shut(j, middle, space)? {
-                        let Share { factor, error } = exchange(elements, j, &part);
-                        touch.exchange.factor += factor;
-                        touch.exchange.error += error;
-                        touch.rings.push(if number == i { part } else { part.into_iter().rev().collect() });
-                    }
+                let (parts, is_all) = self.shut_parts(i, j, whole, space)?;
+                if parts.is_empty() {
+                    continue;
                 }
-                if touch.rings.len() == count {
+                let mut touch = Touch { other, exchange: Share::default(), rings: Vec::new() };
+                for part in parts {
+                    let Share { factor, error } = exchange(elements, j, &part);
+                    touch.exchange.factor += factor;
+                    touch.exchange.error += error;
+                    touch.rings.push(if number == i { part } else { part.into_iter().rev().collect() });
+                }
+                if is_all {
                     // As it is, without corners of rounding.
                     touch.rings = vec![elements.all[other as usize].ring.iter().rev().copied().collect()];
                 }
-                if !touch.rings.is_empty() {
-                    found.push(touch);
-                }
+                found.push(touch);
             }
         }
         Ok(found)
     }
 
-    /// What two elements have in common, in parts between the lines where others stand on either of them: each is shut as a whole, or not at all.
-    fn apart(&self, i: u32, j: u32, common: Vec<DVec3>) -> Vec<Vec<DVec3>> {
+    /// The parts that are shut of what two elements have in common, and whether that is all of it.
+    fn shut_parts(
+        &self,
+        i: u32,
+        j: u32,
+        whole: Vec<DVec3>,
+        space: &mut LookSpace,
+    ) -> Result<(Vec<Vec<DVec3>>, bool), ExchangeError> {
         let elements = self.blockers.elements;
-        let [i, j] = [i, j].map(|number| &elements.all[number as usize]);
-        let [frame, other] = [i, j].map(|element| &elements.frames[element.facet as usize]);
-        let mut contacts = self.blockers.contacts(i);
-        let of_other = self.blockers.contacts(j).into_iter();
-        contacts.extend(of_other.map(|segment| segment.map(|p| frame.flat(other.lift(p)))));
-        let flat: Vec<DVec2> = common.iter().map(|&p| frame.flat(p)).collect();
-        let parts = cut(&flat, i.radius.min(j.radius), &contacts);
-        if parts.len() == 1 {
-            return vec![common];
+        let facets = [i, j].map(|number| elements.all[number as usize].facet);
+        let [own, other] = facets;
+        if shuts(self.blockers.facets, own, other) {
+            return Ok(self.looker.shut.parts(facets, &elements.frames[own as usize], whole));
         }
-        let mut parts: Vec<Vec<DVec3>> =
-            parts.into_iter().map(|part| part.into_iter().map(|p| frame.lift(p)).collect()).collect();
-        for part in &mut parts {
-            // Sides of rounding have no direction.
-            part.dedup_by(|a, b| a.distance(*b) <= TOUCHES);
-            if part.len() > 1 && part[0].distance(part[part.len() - 1]) <= TOUCHES {
-                part.pop();
+        let parts = apart(&self.blockers, facets, whole);
+        let count = parts.len();
+        let mut shut = Vec::new();
+        for part in parts {
+            let middle = middle(&part);
+            let mut is_shut = |facet: u32| self.looker.is_shut(space, facet, middle, self.touching, None);
+            if is_shut(own)? || is_shut(other)? {
+                shut.push(part);
             }
         }
-        parts.retain(|part| part.len() >= 3);
-        parts
+        let is_all = shut.len() == count;
+        Ok((shut, is_all))
     }
+}
 
-    fn is_shut(&self, element: u32, at: DVec3, space: &mut LookSpace) -> Result<bool, ExchangeError> {
-        let facet = self.blockers.elements.all[element as usize].facet;
-        self.looker.is_shut(space, facet, at, self.touching)
+pub(super) fn middle(part: &[DVec3]) -> DVec3 {
+    part.iter().sum::<DVec3>() / part.len() as f64
+}
+
+/// What two facets have in common, in parts between the lines where others stand on either of them: each is shut as a whole, or not at all.
+pub(super) fn apart(blockers: &Blockers<'_>, facets: [u32; 2], common: Vec<DVec3>) -> Vec<Vec<DVec3>> {
+    let [frame, other] = facets.map(|facet| &blockers.elements.frames[facet as usize]);
+    let [mut contacts, of_other] = facets.map(|facet| blockers.contacts(facet, &common, TOUCHES));
+    contacts.extend(of_other.into_iter().map(|segment| segment.map(|p| frame.flat(other.lift(p)))));
+    let flat: Vec<DVec2> = common.iter().map(|&p| frame.flat(p)).collect();
+    let size = common.iter().map(|p| p.distance(common[0])).fold(0.0, f64::max);
+    let parts = cut(&flat, size, &contacts);
+    if parts.len() == 1 {
+        return vec![common];
     }
+    let mut parts: Vec<Vec<DVec3>> =
+        parts.into_iter().map(|part| part.into_iter().map(|p| frame.lift(p)).collect()).collect();
+    for part in &mut parts {
+        // Sides of rounding have no direction.
+        part.dedup_by(|a, b| a.distance(*b) <= TOUCHES);
+        if part.len() > 1 && part[0].distance(part[part.len() - 1]) <= TOUCHES {
+            part.pop();
+        }
+    }
+    parts.retain(|part| part.len() >= 3);
+    parts
 }
 
 /// What two elements in one plane have in common, as the first of them runs; `None` if that is not more than a strip.
 fn common(elements: &Elements, i: u32, j: u32) -> Option<Vec<DVec3>> {
     let [i, j] = [i, j].map(|number| &elements.all[number as usize]);
-    let frame = &elements.frames[i.facet as usize];
-    let mut ring: Vec<DVec2> = j.ring.iter().map(|&p| frame.flat(p)).collect();
-    if frame.normal.dot(elements.frames[j.facet as usize].normal) < 0.0 {
+    let [frame, other] = [i, j].map(|element| &elements.frames[element.facet as usize]);
+    let part = in_both((&i.flat, frame), (&j.ring, other))?;
+    (0.5 * double_area(&part).length() > strip(i).min(strip(j))).then_some(part)
+}
+
+/// What two convex polygons in one plane have in common, as the first of them runs, of which corners are in its frame.
+pub(super) fn in_both((own, frame): (&[DVec2], &Frame), (ring, other): (&[DVec3], &Frame)) -> Option<Vec<DVec3>> {
+    let mut ring: Vec<DVec2> = ring.iter().map(|&p| frame.flat(p)).collect();
+    if frame.normal.dot(other.normal) < 0.0 {
         ring.reverse();
     }
-    let [low, high] = ring.iter().fold([ring[0]; 2], |[low, high], &p| [low.min(p), high.max(p)]);
-    if low.cmpge(i.high).any() || high.cmple(i.low).any() {
+    let extent = |ring: &[DVec2]| ring.iter().fold([ring[0]; 2], |[low, high], &p| [low.min(p), high.max(p)]);
+    let ([low, high], [own_low, own_high]) = (extent(&ring), extent(own));
+    if low.cmpge(own_high).any() || high.cmple(own_low).any() {
         return None;
     }
-    let (mut part, mut cut) = (i.flat.clone(), Vec::new());
-    for [a, b] in sides(&ring) {
+    let part = within(own.to_vec(), &ring);
+    (part.len() >= 3).then(|| part.into_iter().map(|p| frame.lift(p)).collect())
+}
+
+/// A convex polygon cut to another one.
+pub(super) fn within(mut part: Vec<DVec2>, ring: &[DVec2]) -> Vec<DVec2> {
+    let mut cut = Vec::new();
+    for [a, b] in sides(ring) {
         clip(&part, |p| turn(a, b, p), &mut cut);
         std::mem::swap(&mut part, &mut cut);
     }
-    let part: Vec<DVec3> = part.into_iter().map(|p| frame.lift(p)).collect();
-    (0.5 * double_area(&part).length() > strip(i).min(strip(j))).then_some(part)
+    part
 }
 
 /// What two elements exchange over a part that they have in common.

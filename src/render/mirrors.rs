@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 
 /// So many planes of mirrors have an image of their own, those that take most of the view: each costs what a scene and a view do. In others what is seen is found point by point.
 const MOST_PLANES: usize = 16;
-/// So many pieces all copies of the scene have together at most, but for one copy: some 700 bytes each.
+/// So many pieces all copies of the scene have together, or there is one copy: some 700 bytes each.
 const MOST_PIECES: usize = 2_000_000;
 
 /// What is seen in the mirrors of a camera's image.

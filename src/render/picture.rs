@@ -68,7 +68,7 @@ const BATCH: u32 = 1024;
 
 /// Renders what a camera at `eye` sees. `done` is told from any thread how many more pixels are.
 ///
-/// Which polygon is seen in what part of a pixel is exact, and so is which one is seen in a flat mirror, in the 16 planes of mirrors that take most of the picture; each is shaded at one point of that part ([`PixelPart::direction`]), and the pixel is the sum of areas times radiances. The result does not depend
+/// Which polygon is seen in what part of a pixel is exact, and so is which one is seen in a flat mirror, in the planes of mirrors that take most of the picture (16, fewer in scenes of more than 125,000 pieces; each takes a copy of the scene, some 700 bytes a piece); each is shaded at one point of that part ([`PixelPart::direction`]), and the pixel is the sum of areas times radiances. The result does not depend
 /// on the number of threads. Memory: 32 bytes for each pixel, as many for each part of those that show more than one polygon, and what [`render_bands`] takes.
 ///
 /// # Errors
