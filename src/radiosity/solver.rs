@@ -337,10 +337,9 @@ const ROOM: f64 = 1e6;
 
 /// Checks that something emits, and that numbers hold all of it, and the areas that it arrives at.
 fn check_power(patches: &[PatchInfo], emission: &[DVec3]) -> Result<(), RadiosityError> {
-    let emits = |&(patch, emission): &(&PatchInfo, &DVec3)| patch.shape.is_some() && *emission != DVec3::ZERO;
-    let Some((&PatchInfo { polygon: first, .. }, _)) = patches.iter().zip(emission).find(emits) else {
+    if emission.iter().all(|&emission| emission == DVec3::ZERO) {
         return Err(RadiosityError::Dark);
-    };
+    }
     if let Some(&PatchInfo { polygon, .. }) = patches.iter().find(|patch| !patch.area.is_finite()) {
         return Err(RadiosityError::TooLarge { polygon });
     }
@@ -351,7 +350,13 @@ fn check_power(patches: &[PatchInfo], emission: &[DVec3]) -> Result<(), Radiosit
             return Err(RadiosityError::TooBright { polygon });
         }
     }
-    if sum > 0.0 { Ok(()) } else { Err(RadiosityError::TooDim { polygon: first }) }
+    if sum > 0.0 {
+        return Ok(());
+    }
+    // What has no area emits nothing; else numbers do not hold what it emits.
+    let emits = |&(patch, &emission): &(&PatchInfo, &DVec3)| patch.shape.is_some() && emission != DVec3::ZERO;
+    let first = patches.iter().zip(emission).find(emits);
+    Err(first.map_or(RadiosityError::Dark, |(patch, _)| RadiosityError::TooDim { polygon: patch.polygon }))
 }
 
 /// Below some 1e-308 numbers lose digits: each is off by 5e-324 at most, and so is a power by that times an area. With as many as 1e10 operations those are 5e-14 of all that is emitted.
