@@ -262,3 +262,44 @@ fn what_is_wrong_is_said_in_one_line() {
         assert!(error.contains(what), "{line}: {error}");
     }
 }
+
+/// A room in a unit in which numbers of GLB files end: it is refused before anything is written, and a page shows it as it does the same room in another unit.
+#[test]
+fn coordinates_beyond_single_precision() {
+    let folder = Folder::new("radiosity-far");
+    let room = |unit: f64| {
+        let corner = |k: usize| [k & 1, k >> 1 & 1, k >> 2].map(|x| x as f64 * unit);
+        let corners: Vec<String> = (0..8).map(corner).map(|[x, y, z]| format!("v {x:e} {y:e} {z:e}\n")).collect();
+        let walls = "f 1 2 4 3\nf 1 5 6 2\nf 2 6 8 4\nf 4 8 7 3\nf 3 7 5 1\n";
+        format!("mtllib room.mtl\n{}usemtl lamp\nf 5 7 8 6\nusemtl wall\n{walls}", corners.concat())
+    };
+    folder.write("room.mtl", "newmtl lamp\nKd .5 .5 .5\nKe 1 1 1\nnewmtl wall\nKd .5 .5 .5\n");
+    let mut pages = Vec::new();
+    for unit in [1.0, 2f64.powi(-300), 2f64.powi(300), 2f64.powi(500)] {
+        folder.write("room.obj", room(unit));
+        folder.run("radiosity room.obj -o room.html", 0);
+        pages.push(folder.read("room.html"));
+        assert!(pages[0] == pages[pages.len() - 1], "{unit:e}");
+        let is_too_far = unit > 1e38;
+        for line in ["radiosity room.obj -o room.json -o room.glb", "shadows room.obj --light 0,0,0 -o room.glb"] {
+            let said = folder.run(line, i32::from(is_too_far));
+            assert_eq!(said.contains("of which GLB files are"), is_too_far, "{line}: {said}");
+            let json = folder.path("room.json");
+            assert_eq!(json.exists(), !is_too_far && line.contains("json"), "{line}");
+            let _ = std::fs::remove_file(json);
+        }
+    }
+}
+
+/// A furnace of which hardly any light is taken.
+#[test]
+fn what_hardly_ends_is_refused() {
+    let folder = Folder::new("radiosity-furnace");
+    folder.write("f.mtl", "newmtl w\nKd .999999999999 .999999999999 .999999999999\nKe 1 1 1\n");
+    folder.write(
+        "f.obj",
+        "mtllib f.mtl\nusemtl w\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\nf 1 4 2\nf 4 3 2\n",
+    );
+    let said = folder.run("radiosity f.obj", 1);
+    assert!(said.contains("took less than 1e-9 from what is left; some surface has to reflect less"), "{said}");
+}

@@ -208,6 +208,32 @@ fn overlapping_solids_exchange_with_a_room_what_their_union_does() {
     }
 }
 
+/// Where a block has no top, what stands in it is seen from the floor below it: neither of the two bottoms shuts that off for certain, and both are named.
+#[test]
+fn bottoms_of_open_bodies_that_overlap_are_named() {
+    let other = [[1.5, 1.5, 0.0], [2.5, 2.5, 0.5]];
+    for turn in [DMat3::IDENTITY, DMat3::from_rotation_x(0.7) * DMat3::from_rotation_z(0.3)] {
+        let named = |builder: SceneBuilder| {
+            let options = ExchangeOptions { tolerance: TOLERANCE, ..ExchangeOptions::default() };
+            let exchange = Exchange::new(&built(builder), PatchPlan::Polygons, options).expect("patches");
+            exchange
+                .half_shut()
+                .expect("views")
+                .into_iter()
+                .map(|pair| pair.map(|polygon| polygon.0))
+                .collect::<Vec<_>>()
+        };
+        assert_eq!(named(with_boxes(&[other], turn)), [[0; 2]; 0]);
+        assert_eq!(named(with_boxes(&[], turn)), [[0; 2]; 0]);
+        // Three walls and a bottom, without a top and the wall towards the block, whose bottom is proved to be that of a solid.
+        let [low, high] = other;
+        let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
+        let corners: Vec<[f64; 3]> = (0..8).map(corner).map(|p| (turn * DVec3::from(p)).to_array()).collect();
+        let faces = [vec![2, 3, 1, 0], vec![1, 5, 4, 0], vec![6, 7, 3, 2], vec![3, 7, 5, 1]];
+        assert_eq!(named(with_boxes(&[], turn).mesh(&corners, &faces, grey())), [[0, 12]]);
+    }
+}
+
 /// A wall in line with the face of a block, as facades of a row of houses are: rounding puts each before or behind the plane of the other.
 #[test]
 fn a_wall_in_line_with_a_block_sees_what_it_does_in_a_straight_room() {

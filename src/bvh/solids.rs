@@ -9,7 +9,7 @@
 //! outside. What is not proved is no solid: that costs time, never a wrong image.
 
 use crate::bsp::{Bounds, Skeleton};
-use crate::exact::{Sign, U, orient3d};
+use crate::exact::{Sign, U, orient3d, power_of_two_at_most};
 use crate::scene::{PieceId, PieceRef, Scene, Side, VertexId};
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -190,8 +190,8 @@ impl Surface<'_> {
         let all = || self.pieces.iter().flat_map(|&piece| self.scene.piece(piece).points());
         let most = all().fold(0.0, |most: f64, p| most.max((p - from).abs().max_element()));
         // A power of two, so that nothing is rounded and products are numbers.
-        let unit = f64::from_bits(most.to_bits() & f64::INFINITY.to_bits());
-        if !(unit.is_normal() && (1.0 / unit).is_normal()) {
+        let unit = power_of_two_at_most(most);
+        if !((1.0 / unit).is_normal() && most >= unit) {
             return None;
         }
         let (mut volume, mut size, mut terms) = (0.0, 0.0, 0.0);

@@ -1,7 +1,7 @@
 //! Where one stands.
 
 use crate::bsp::Skeleton;
-use crate::exact::{ApproxPlane, Sign, orient3d};
+use crate::exact::{ApproxPlane, Sign, orient3d, power_of_two_at_most};
 use crate::scene::{PieceId, PieceRef, PolygonId, Scene, Side, SupportingPlane};
 use glam::DVec3;
 use std::cmp::Ordering;
@@ -205,11 +205,6 @@ impl<'a> Foot<'a> {
     fn compare(&self, other: &Self) -> Ordering {
         self.distance.total_cmp(&other.distance)
     }
-}
-
-/// The largest power of two that is not above a positive number; at least 2^-1022.
-fn power_of_two_at_most(x: f64) -> f64 {
-    f64::from_bits(x.to_bits() & (0x7ff << 52)).max(f64::MIN_POSITIVE)
 }
 
 /// The unit normal of a piece, to its front.

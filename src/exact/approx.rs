@@ -10,6 +10,11 @@ use glam::DVec3;
 /// The unit roundoff, `2^-53`.
 pub(crate) const U: f64 = f64::EPSILON / 2.0;
 
+/// The largest power of two that is not above a positive number; at least 2^-1022.
+pub(crate) fn power_of_two_at_most(x: f64) -> f64 {
+    f64::from_bits(x.to_bits() & (0x7ff << 52)).max(f64::MIN_POSITIVE)
+}
+
 /// A bound on what all underflows of one formula can add.
 const UNDERFLOW: f64 = 1.0 / (1u64 << 48) as f64 * f64::MIN_POSITIVE;
 

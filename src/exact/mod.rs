@@ -28,7 +28,7 @@ pub use orient::orient3d;
 pub use sign::Sign;
 pub use stats::PredicateStats;
 
-pub(crate) use approx::{Approx3, U};
+pub(crate) use approx::{Approx3, U, power_of_two_at_most};
 pub(crate) use approximate::{ApproxPlane, ApproxPoint};
 pub(crate) use arena::{Arena, Kept3};
 pub(crate) use boxes::SeenBox;

@@ -9,12 +9,12 @@ use super::row::{Entry, PatchInfo, Row, Share};
 use super::row_space::RowSpace;
 use super::seen::{Columns, Looker};
 use super::shared::{self, Shared};
-use super::shut::Shut;
-use super::touching::{overlap, touching_facets};
+use super::shut::{Shut, half_shut};
+use super::touching::{on_each_other, overlap, touching_facets};
 use super::tree::ElementTree;
 use super::{ExchangeError, ExchangeOptions, PatchMesh, PatchPlan, Sides};
 use crate::parallel;
-use crate::scene::Scene;
+use crate::scene::{PolygonId, Scene};
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
@@ -161,6 +161,22 @@ impl Exchange {
             parallel::in_order(block, compute, |(row, took)| take(row, took))?;
         }
         Ok(())
+    }
+
+    /// Pairs of polygons that lie on each other face to face, as a floor and the bottom of a block do, where it is not clear whether either shuts the other one off: neither is part of a solid that is proved to be closed, and of what is before
+    /// them some are backs and some are not. Bodies that are not closed are such, or that overlap. The floor sees what is before it, then, and the bottom what is below the floor. None if backs count. The cost is that of two views for each pair.
+    ///
+    /// # Errors
+    /// If a view has too many cells.
+    pub fn half_shut(&self) -> Result<Vec<[PolygonId; 2]>, ExchangeError> {
+        if self.options.sides == Sides::Both {
+            return Ok(Vec::new());
+        }
+        let alone = Shared::default();
+        let ElementRows { blockers, looker, touching, .. } = self.element_rows(&alone);
+        let pairs = half_shut(&blockers, &looker, touching)?;
+        let polygons = |pair: [u32; 2]| on_each_other(&self.elements, pair.map(|facet| facet as usize));
+        Ok(pairs.into_iter().filter_map(polygons).collect())
     }
 
     /// `F[from][to]` once more, by points on the patch that it is from and to the tolerance: what rows have comes from closed forms, or from points on the smaller of the two, and

@@ -35,6 +35,29 @@ pub(super) struct LookSpace {
     met: Vec<u32>,
 }
 
+/// What parts of what is seen from a point shut it off.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Before {
+    /// Backs, and fronts where they are face to face with others, not all of which are others'.
+    shut: f64,
+    /// Of that, backs of a solid.
+    inside: f64,
+    /// All else.
+    open: f64,
+}
+
+impl Before {
+    /// True if a back of the solid is seen, or if nothing is open.
+    pub(super) fn is_shut(self) -> bool {
+        self.inside > SHUT || self.open <= SHUT && self.shut > SHUT
+    }
+
+    /// True if some of what is seen would shut it off, and some would not.
+    pub(super) fn is_mixed(self) -> bool {
+        self.inside <= SHUT && self.open > SHUT && self.shut > SHUT
+    }
+}
+
 /// Columns of a row that are not patches come after them.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Columns {
@@ -146,21 +169,19 @@ impl Looker<'_> {
         Ok(())
     }
 
-    /// True if nothing is seen from the point of a facet's front nearest to `point` but backs, and fronts where they are face to face with others, not all of which are others'; or if a back
-    /// of `solid` is seen. `touching` has for each facet those that it is face to face with.
-    pub(super) fn is_shut(
+    /// What shuts the point of a facet's front nearest to `point` off, and what does not. `touching` has for each facet those that it is face to face with.
+    pub(super) fn before(
         &self,
         space: &mut LookSpace,
         facet: u32,
         point: DVec3,
         touching: &[Vec<u32>],
         solid: Option<u32>,
-    ) -> Result<bool, ExchangeError> {
+    ) -> Result<Before, ExchangeError> {
         let LookSpace { view, corners, flat, .. } = space;
         let (viewpoint, image) = self.view(view, facet, point)?;
         let receiver = Receiver::new(self.elements.frames[facet as usize].normal);
-        // What shuts it, of that the inside of the solid, and what does not.
-        let (mut shut, mut inside, mut open) = (0.0, 0.0, 0.0);
+        let Before { mut shut, mut inside, mut open } = Before::default();
         for cell in image.cells() {
             let mut share = || receiver.factor_of(cell.boundary(), corners);
             match (cell.polygon(), cell.side()) {
@@ -187,7 +208,7 @@ impl Looker<'_> {
                 (None, _) => open += share(),
             }
         }
-        Ok(inside > SHUT || open <= SHUT && shut > SHUT)
+        Ok(Before { shut, inside, open })
     }
 
     /// True if facets that are face to face with another one cover all of a part of it together.

@@ -8,7 +8,7 @@ use super::blockers::Blockers;
 use super::bodies::MOST_FACETS;
 use super::contacts::{TOUCHES, take_out};
 use super::facets::{Facet, Facets};
-use super::seen::{LookSpace, Looker};
+use super::seen::{Before, LookSpace, Looker};
 use super::shape::Frame;
 use super::touching::{apart, in_both, middle, within};
 use crate::bvh::Solid;
@@ -45,12 +45,8 @@ impl Shut {
         touching: &[Vec<u32>],
     ) -> Result<Self, ExchangeError> {
         let (facets, frames) = (blockers.facets, &blockers.elements.frames);
-        let pairs: Vec<[u32; 2]> = (0..)
-            .zip(touching)
-            .flat_map(|(a, others)| others.iter().filter(move |&&b| a < b).map(move |&b| [a, b]))
-            .filter(|&[a, b]| shuts(facets, a, b))
-            .collect();
-        let shut = parallel::map(pairs, |pair| {
+        let pairs = pairs(touching).filter(|&[a, b]| shuts(facets, a, b)).collect();
+        let shut = parallel::map(pairs, |pair: [u32; 2]| {
             shut_parts(blockers, looker, touching, pair).map(|(parts, is_all)| (pair, parts, is_all))
         });
         let convex = ConvexSolids::of(facets, frames);
@@ -134,24 +130,57 @@ fn shut_parts(
     pair: [u32; 2],
 ) -> Result<(Vec<Vec<DVec3>>, bool), ExchangeError> {
     let [facet, other] = pair.map(|number| &blockers.facets.all[number as usize]);
-    let frames = pair.map(|number| &blockers.elements.frames[number as usize]);
-    let flat: Vec<DVec2> = facet.ring.iter().map(|&p| frames[0].flat(p)).collect();
-    let Some(common) = in_both((&flat, frames[0]), (&other.ring, frames[1])) else { return Ok((Vec::new(), false)) };
-    let parts = apart(blockers, pair, common);
+    let parts = common_parts(blockers, pair);
     let count = parts.len();
     let (mut shut, mut space) = (Vec::new(), LookSpace::default());
     for part in parts {
         let middle = middle(&part);
         let mut is_shut = |from: u32, by: &Facet| match solid_within(by) {
-            Some(solid) => looker.is_shut(&mut space, from, middle, touching, Some(solid.number)),
+            Some(solid) => looker.before(&mut space, from, middle, touching, Some(solid.number)).map(Before::is_shut),
             None => Ok(false),
         };
         if is_shut(pair[0], other)? || is_shut(pair[1], facet)? {
             shut.push(part);
         }
     }
-    let is_all = shut.len() == count;
+    let is_all = count > 0 && shut.len() == count;
     Ok((shut, is_all))
+}
+
+/// What two facets have in common, in parts between the lines where others stand on either of them.
+fn common_parts(blockers: &Blockers<'_>, pair: [u32; 2]) -> Vec<Vec<DVec3>> {
+    let [facet, other] = pair.map(|number| &blockers.facets.all[number as usize]);
+    let frames = pair.map(|number| &blockers.elements.frames[number as usize]);
+    let flat: Vec<DVec2> = facet.ring.iter().map(|&p| frames[0].flat(p)).collect();
+    let common = in_both((&flat, frames[0]), (&other.ring, frames[1]));
+    common.map_or_else(Vec::new, |common| apart(blockers, pair, common))
+}
+
+/// Pairs of facets face to face, none of them the outside of a solid, of which it is not clear whether they shut each other off: from the middle of what they have in common, or of a part of it, backs are seen as well as
+/// what is no back.
+pub(super) fn half_shut(
+    blockers: &Blockers<'_>,
+    looker: &Looker<'_>,
+    touching: &[Vec<u32>],
+) -> Result<Vec<[u32; 2]>, ExchangeError> {
+    let pairs = pairs(touching).filter(|&[a, b]| !shuts(blockers.facets, a, b)).collect();
+    let found = parallel::map(pairs, |pair: [u32; 2]| {
+        let mut space = LookSpace::default();
+        for part in common_parts(blockers, pair) {
+            let mut before = |from: u32| looker.before(&mut space, from, middle(&part), touching, None);
+            let [one, other] = [before(pair[0])?, before(pair[1])?];
+            if !one.is_shut() && !other.is_shut() && (one.is_mixed() || other.is_mixed()) {
+                return Ok(Some(pair));
+            }
+        }
+        Ok(None)
+    });
+    found.into_iter().filter_map(Result::transpose).collect()
+}
+
+/// Those that are face to face with each other, each pair once.
+fn pairs(touching: &[Vec<u32>]) -> impl Iterator<Item = [u32; 2]> {
+    (0..).zip(touching).flat_map(|(a, others)| others.iter().filter(move |&&b| a < b).map(move |&b| [a, b]))
 }
 
 /// The solid that a facet is the outside of.

@@ -13,7 +13,7 @@ use super::element_row::ElementRows;
 use super::facets::Facets;
 use super::footprints::near_pairs;
 use super::row::Share;
-use super::seen::{LookSpace, SHUT};
+use super::seen::{Before, LookSpace, SHUT};
 use super::shaft::Lies;
 use super::shape::{Frame, clip, double_area, sides, turn};
 use super::shut::{Shut, shuts};
@@ -69,14 +69,18 @@ pub(super) fn overlap(facets: &Facets, elements: &Elements, shut: &Shut) -> Opti
             && is_open(a)
             && is_open(b)
         {
-            let pairs = elements.of_facet[a].iter().flat_map(|&i| elements.of_facet[b].iter().map(move |&j| (i, j)));
-            let on_each_other = pairs.filter(|&(i, j)| common(elements, i, j).is_some());
-            let polygon = |k: u32| elements.patches[elements.all[k as usize].patch as usize].polygon;
-            let pair = on_each_other.map(|(i, j)| [polygon(i).min(polygon(j)), polygon(i).max(polygon(j))]).min();
-            first = [first, pair].into_iter().flatten().min();
+            first = [first, on_each_other(elements, [a, b])].into_iter().flatten().min();
         }
     });
     first
+}
+
+/// The first two polygons of two facets in one plane that lie on each other.
+pub(super) fn on_each_other(elements: &Elements, [a, b]: [usize; 2]) -> Option<[PolygonId; 2]> {
+    let pairs = elements.of_facet[a].iter().flat_map(|&i| elements.of_facet[b].iter().map(move |&j| (i, j)));
+    let polygon = |k: u32| elements.patches[elements.all[k as usize].patch as usize].polygon;
+    let on_each_other = pairs.filter(|&(i, j)| common(elements, i, j).is_some());
+    on_each_other.map(|(i, j)| [polygon(i).min(polygon(j)), polygon(i).max(polygon(j))]).min()
 }
 
 /// Calls `found` with all pairs of facets that are in one plane and near each other, or as near to it as rounding leaves them.
@@ -149,7 +153,8 @@ impl ElementRows<'_> {
         let mut shut = Vec::new();
         for part in parts {
             let middle = middle(&part);
-            let mut is_shut = |facet: u32| self.looker.is_shut(space, facet, middle, self.touching, None);
+            let mut is_shut =
+                |facet: u32| self.looker.before(space, facet, middle, self.touching, None).map(Before::is_shut);
             if is_shut(own)? || is_shut(other)? {
                 shut.push(part);
             }

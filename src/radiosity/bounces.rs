@@ -42,7 +42,7 @@ impl Gathered {
     /// The cost is that of a pass over all factors for each bounce. Memory: some 500 bytes a patch.
     ///
     /// # Errors
-    /// If a material has no reflectance, if nothing emits, or if it would never end, as nothing is absorbed.
+    /// If a material has no reflectance, if nothing emits, or if it would not end, as 1000 bounces take less than 1e-9 from what is left.
     ///
     /// # Panics
     /// If there are not as many rows as patches.

@@ -1,6 +1,6 @@
 //! Which corners patches have in common.
 
-use super::rings::{mean_of, normal, off};
+use super::rings::{length, mean_of, normal, off};
 use super::surface::INSIDE;
 use crate::bsp::Bounds;
 use crate::bvh::{BvhNode, Content, boxes};
@@ -138,7 +138,7 @@ impl Standing {
 
     /// True if something stands on the front of a ring at the middle of one of its sides.
     fn is_on(&self, ring: &[DVec3], middle: DVec3) -> bool {
-        let lengths = ring.iter().zip(ring.iter().cycle().skip(1)).map(|(a, b)| a.distance(*b));
+        let lengths = ring.iter().zip(ring.iter().cycle().skip(1)).map(|(&a, &b)| length(a - b));
         let reach = BESIDE * lengths.fold(0.0, f64::max);
         let up = normal(ring);
         let stands = |other: &[DVec3]| {

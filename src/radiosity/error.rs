@@ -45,8 +45,11 @@ pub enum RadiosityError {
         /// The first such polygon.
         polygon: PolygonId,
     },
-    /// What surfaces reflect in a closed scene is not less than what they get: it would never end.
-    #[error("nothing is absorbed after {shots} shots; some surface has to reflect less than 1")]
+    /// What surfaces reflect in a closed scene is not less than what they get, or hardly: it would not end in any time.
+    #[error(
+        "hardly anything is absorbed: of {shots} shots, the last ones took less than 1e-9 from what is left; some surface has \
+         to reflect less"
+    )]
     Endless {
         /// How many patches have shot.
         shots: usize,

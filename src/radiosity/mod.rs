@@ -23,7 +23,7 @@ pub use balance::Balance;
 pub use bounces::Gathered;
 pub use error::RadiosityError;
 pub use gather::Gather;
-pub(crate) use rings::{normal, off};
+pub(crate) use rings::{in_own_unit, normal, off};
 pub use solver::{Shot, Solver, SolverOptions, SolverState};
 pub use surface::{Surface, SurfaceOptions};
 pub use uneven::uneven_patches;

@@ -1,7 +1,7 @@
 //! A mesh of all surfaces with radiosities at its corners.
 
 use super::corners::Corners;
-use super::rings::mean_of;
+use super::rings::{in_own_unit, length, mean_of};
 use super::{Gather, RadiosityError, strength};
 use crate::scene::{PieceId, PieceRef, PolygonId, Scene};
 use glam::DVec3;
@@ -134,12 +134,17 @@ impl Surface {
         if self.positions.len() > limit { Err(RadiosityError::TooManyCorners { limit }) } else { Ok(()) }
     }
 
+    /// The area of a triangle.
+    pub(crate) fn area(&self, triangle: [u32; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|corner| self.positions[corner as usize]);
+        length((b - a).cross(c - a)) / 2.0
+    }
+
     /// The mean of what is reflected.
     fn mean(&self, gather: &Gather<'_>) -> f64 {
         let (mut sum, mut areas) = (0.0, 0.0);
         for (triangle, patch) in self.triangles.iter().zip(&self.patches) {
-            let [a, b, c] = triangle.map(|corner| self.positions[corner as usize]);
-            let area = (b - a).cross(c - a).length() / 2.0;
+            let area = self.area(*triangle);
             let radiosity = triangle.iter().map(|&corner| self.radiosity[corner as usize]).sum::<DVec3>() / 3.0;
             sum += area * strength(radiosity - gather.emission(*patch)).max(0.0);
             areas += area;
@@ -263,7 +268,7 @@ fn diagonal_through(middle: DVec3, ring: &[DVec3], numbers: &[u32]) -> Option<[u
     let first = usize::from(ring.len() == 4 && is_cut_second(ring));
     let [a, b] = [first, first + 2].map(|k| ring.get(k));
     let [&a, &b] = [a?, b?];
-    let is_near = ring.len() == 4 && a.midpoint(b).distance(middle) <= INSIDE * a.distance(b);
+    let is_near = ring.len() == 4 && length(a.midpoint(b) - middle) <= INSIDE * length(a - b);
     is_near.then(|| [numbers[first], numbers[first + 2]]).map(|[p, q]| [p.min(q), p.max(q)])
 }
 
@@ -293,7 +298,9 @@ fn fan(ring: &[DVec3], numbers: &[u32]) -> Vec<[u32; 3]> {
 
 /// True if a ring is cut from its second corner and not from its first: a quadrilateral along the shorter diagonal.
 fn is_cut_second(ring: &[DVec3]) -> bool {
-    matches!(ring, [a, b, c, d] if b.distance_squared(*d) < a.distance_squared(*c))
+    let &[a, b, c, d] = ring else { return false };
+    let [first, second] = in_own_unit([c - a, d - b]);
+    second.length_squared() < first.length_squared()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::RenderError;
 use super::patch_index::PatchIndex;
 use crate::contour::{ContourImage, SceneOrder};
 use crate::factors::Exchange;
-use crate::radiosity::{Gather, RadiosityError, Surface, SurfaceOptions, off};
+use crate::radiosity::{Gather, RadiosityError, Surface, SurfaceOptions, in_own_unit, off};
 use crate::scene::{PolygonId, Scene, Side};
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -190,10 +190,11 @@ impl Indirect {
 
 /// The shares that the corners of a triangle have in a point, which is moved into it.
 fn barycentric([a, b, c]: [DVec3; 3], point: DVec3) -> [f64; 3] {
-    let normal = (b - a).cross(c - a);
+    let [b, c, point] = in_own_unit([b - a, c - a, point - a]);
+    let normal = b.cross(c);
     let whole = normal.length_squared();
     let share = |from: DVec3, to: DVec3| (normal.dot((to - from).cross(point - from)) / whole).clamp(0.0, 1.0);
-    let shares = [share(b, c), share(c, a), share(a, b)];
+    let shares = [share(b, c), share(c, DVec3::ZERO), share(DVec3::ZERO, b)];
     let sum: f64 = shares.iter().sum();
     if sum > 0.0 { shares.map(|share| share / sum) } else { [1.0 / 3.0; 3] }
 }

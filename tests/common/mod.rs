@@ -4,6 +4,7 @@
 #[cfg(feature = "cli")]
 pub(crate) mod browser;
 pub(crate) mod face;
+pub(crate) mod pictures;
 #[cfg(feature = "cli")]
 pub(crate) mod program;
 pub(crate) mod scenes;

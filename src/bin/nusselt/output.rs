@@ -1,6 +1,7 @@
 //! Files and standard output.
 
 use crate::failure::Failure;
+use nusselt::io::gltf::check_positions;
 use nusselt::io::{atomic_write, check_writable, mtl, obj, remove_abandoned};
 use nusselt::scene::Scene;
 use std::fmt::Display;
@@ -81,6 +82,13 @@ pub(crate) fn write_results(
     write: impl FnOnce(&mut BufWriter<File>) -> Result<(), Unwritten>,
 ) -> Result<(), Failure> {
     atomic_write(path, write).map_err(|error| error.about(path.display()))
+}
+
+/// Refuses a GLB file of a scene that it does not hold, before any work is done for it.
+pub(crate) fn check_glb(path: &Path, scene: &Scene) -> Result<(), Failure> {
+    let advice = "use a larger unit of length, or another format";
+    check_positions(scene.vertices())
+        .map_err(|error| Failure::Work(format!("cannot write {}: {error}; {advice}", path.display())))
 }
 
 /// The material library beside an OBJ file, and the name by which the OBJ file refers to it.

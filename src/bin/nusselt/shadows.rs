@@ -3,7 +3,7 @@
 use crate::args::{Common, Loading, parse_point};
 use crate::failure::Failure;
 use crate::input::load;
-use crate::output::{check_once, print, print_json, write_file, write_obj};
+use crate::output::{check_glb, check_once, print, print_json, write_file, write_obj};
 use crate::summary::{Lines, Timing, number, vector};
 use glam::DVec3;
 use nusselt::bvh::SceneBvh;
@@ -62,6 +62,11 @@ impl ShadowsOf {
     pub(crate) fn run(&self, common: &Common) -> Result<(), Failure> {
         check_once(self.output.iter().map(Output::path))?;
         let (scene, load_s) = load(&self.scene, self.output.iter().map(Output::path), &self.loading, common)?;
+        for output in &self.output {
+            if let Output::Glb(path) = output {
+                check_glb(path, &scene)?;
+            }
+        }
         let start = Instant::now();
         let bvh = SceneBvh::build(&scene);
         let order_s = start.elapsed().as_secs_f64();

@@ -16,7 +16,7 @@ mod material;
 mod primitive;
 mod write;
 
-pub use write::{GlbMesh, write_glb};
+pub use write::{GlbMesh, check_positions, write_glb};
 
 use super::draft::Draft;
 use super::error::Place;

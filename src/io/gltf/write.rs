@@ -108,14 +108,23 @@ fn check(mesh: &GlbMesh) -> Result<(), String> {
     if !mesh.colors.is_empty() && mesh.colors.len() != count {
         return Err(format!("there are {} colours for {count} corners", mesh.colors.len()));
     }
-    if let Some(p) = mesh.positions.iter().find(|p| !p.as_vec3().is_finite()) {
-        return Err(format!("the corner {p} is not finite as f32"));
-    }
+    check_positions(&mesh.positions)?;
     let colors = mesh.colors.iter().chain([&mesh.color]);
     if colors.flatten().any(|x| !x.is_finite()) {
         return Err("a colour is not finite".to_owned());
     }
     Ok(())
+}
+
+/// Checks that a file has room for coordinates, which are `f32` there: at most 3.4e38.
+///
+/// # Errors
+/// If one is not; it names the first.
+pub fn check_positions(positions: &[DVec3]) -> Result<(), String> {
+    match positions.iter().find(|p| !p.as_vec3().is_finite()) {
+        Some(p) => Err(format!("the corner {:?} is not finite as f32, of which GLB files are", p.to_array())),
+        None => Ok(()),
+    }
 }
 
 const FLOATS: u32 = 5126;

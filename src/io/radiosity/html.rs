@@ -32,8 +32,12 @@ pub fn write_radiosity_html(
         .positions
         .iter()
         .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), &p| (low.min(p), high.max(p)));
-    let middle = if low.is_finite() { low.midpoint(high) } else { DVec3::ZERO };
-    let scale = if low.is_finite() { 2.0 / (high - low).length().max(f64::MIN_POSITIVE) } else { 1.0 };
+    let middle = low.midpoint(high);
+    let half = high * 0.5 - low * 0.5;
+    // Corners are to be within 1 of the origin, whatever the unit: squares of lengths need not be numbers.
+    let most = half.max_element();
+    let length = (half / most).length();
+    let placed = |p: DVec3| if most > 0.0 { (p - middle) / most / length } else { DVec3::ZERO };
     let floats = |vectors: &mut dyn Iterator<Item = DVec3>| {
         let bytes = vectors.flat_map(|v| v.to_array().map(single)).flat_map(f32::to_le_bytes);
         STANDARD.encode(bytes.collect::<Vec<u8>>())
@@ -41,7 +45,7 @@ pub fn write_radiosity_html(
     let integers = |numbers: &mut dyn Iterator<Item = u32>| {
         STANDARD.encode(numbers.flat_map(u32::to_le_bytes).collect::<Vec<u8>>())
     };
-    let positions = floats(&mut surface.positions.iter().map(|&p| (p - middle) * scale));
+    let positions = floats(&mut surface.positions.iter().map(|&p| placed(p)));
     let radiances = floats(&mut surface.radiosity.iter().map(|&b| b / PI * exposure));
     let triangles = integers(&mut surface.triangles.iter().flatten().copied());
     let edges = integers(&mut edges(surface).into_iter().flatten());

@@ -18,9 +18,8 @@ pub fn auto_exposure(surface: &Surface, emission: &[DVec3]) -> f64 {
         .zip(&surface.patches)
         .filter(|(_, patch)| emission[patch.index()] == DVec3::ZERO)
         .map(|(triangle, _)| {
-            let [a, b, c] = triangle.map(|corner| surface.positions[corner as usize]);
             let radiance = triangle.iter().map(|&corner| surface.radiosity[corner as usize]).sum::<DVec3>() / 3.0 / PI;
-            (radiance.max_element(), (b - a).cross(c - a).length())
+            (radiance.max_element(), surface.area(*triangle))
         })
         .collect();
     found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));

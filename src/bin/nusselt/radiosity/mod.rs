@@ -7,7 +7,7 @@ mod write;
 use crate::args::{Common, Loading, parse_direction};
 use crate::failure::Failure;
 use crate::input::load_materials;
-use crate::output::{check_once, print, print_json};
+use crate::output::{check_glb, check_once, print, print_json};
 use crate::summary::{Lines, Timing, number};
 use glam::DVec3;
 use nusselt::io::matrix::MatrixWriter;
@@ -117,6 +117,7 @@ impl Radiosity {
         check_once(files.iter().copied().chain(rows_files.iter().map(PathBuf::as_path)))?;
         let (scene, materials, load_s) = load_materials(&self.scene, files.iter().copied(), &self.loading, common)?;
         materials.check(&scene, common, |_| true)?;
+        self.output.iter().filter(|output| output.is_glb()).try_for_each(|output| check_glb(&output.path, &scene))?;
         let start = Instant::now();
         let work = Work { asked: self, scene: &scene, quiet: common.quiet };
         let stage = work.first_stage()?;

@@ -40,6 +40,10 @@ impl Output {
         };
         Ok(Self { path, format })
     }
+
+    pub(super) fn is_glb(&self) -> bool {
+        self.format == Format::Glb
+    }
 }
 
 impl Radiosity {
