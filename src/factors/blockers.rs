@@ -1,9 +1,11 @@
 //! Which elements of a facet are seen wholly from an element, which not at all, and which it takes views to tell.
 
+use super::blocker::{Blocker, Blocks, Corner};
 use super::contacts::{TOUCHES, contacts, parts};
 use super::element::{Element, Elements};
 use super::facets::Facets;
-use super::shaft::{Blocker, Blocks, Corner, Lies, Shaft};
+use super::lies::Lies;
+use super::shaft::Shaft;
 use super::tree::ElementTree;
 use crate::bvh::Content;
 use crate::contour::SceneOrder;

@@ -4,7 +4,7 @@
 //! is cut that has to be cut off next.
 
 use super::facets::{Facet, spanning};
-use super::shaft::Lies;
+use super::lies::Lies;
 use super::shape::sides;
 use glam::DVec3;
 use std::collections::HashMap;

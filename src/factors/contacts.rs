@@ -5,7 +5,7 @@
 
 use super::element::Element;
 use super::facets::Facets;
-use super::shaft::Lies;
+use super::lies::Lies;
 use super::shape::{Frame, clip, double_area, sides, turn};
 use glam::{DVec2, DVec3};
 

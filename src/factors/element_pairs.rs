@@ -3,11 +3,11 @@
 use super::blockers::{Blockers, Hiders, Seen};
 use super::element::Element;
 use super::element_row::{Effort, ElementRows, from_one};
+use super::lies::Lies;
 use super::partly::{Partly, PartlySpace};
 use super::row::Share;
 use super::row_space::{Found, RowSpace};
 use super::seen::LookSpace;
-use super::shaft::Lies;
 use super::shape::clip;
 use super::shared::Told;
 use super::{Sides, contour, pair};

@@ -3,11 +3,11 @@
 use super::blockers::{Around, Blockers, Seen};
 use super::cubature::{Add, Cubature, Division};
 use super::element::Element;
+use super::lies::Lies;
 use super::pieces::pieces;
 use super::row::Share;
 use super::row_space::{Found, RowSpace};
 use super::seen::Looker;
-use super::shaft::Lies;
 use super::shape::double_area;
 use super::shared::{Shared, Told};
 use super::touching::{Touch, strip};

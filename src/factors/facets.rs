@@ -5,8 +5,8 @@
 
 use super::bodies::{Bodies, FacetSide};
 use super::element::Element;
+use super::lies::Lies;
 use super::placement::Placement;
-use super::shaft::Lies;
 use crate::bvh::{self, SceneBvh, Solid};
 use crate::contour::SceneOrder;
 use crate::scene::{FaceSpec, Material, PieceId, Scene, SceneError};

@@ -4,7 +4,7 @@
 
 use super::contacts::{TOUCHES, contacts};
 use super::facets::{Facet, Facets};
-use super::shaft::Lies;
+use super::lies::Lies;
 use super::shape::{Frame, sides};
 use glam::{DVec2, DVec3};
 

@@ -8,9 +8,9 @@
 use super::bodies::FacetSide;
 use super::element::{Element, Elements};
 use super::facets::Facets;
+use super::lies::Lies;
 use super::rings::Rings;
 use super::screens::{HalfPlane, Screens};
-use super::shaft::Lies;
 use super::shape::{Frame, clip};
 use crate::integral::Receiver;
 use glam::{DVec2, DVec3};

@@ -5,6 +5,7 @@
 //!
 //! `docs/form-factors.md` tells how, with what accuracy and at what cost.
 
+mod blocker;
 mod blockers;
 mod bodies;
 mod closure;
@@ -21,6 +22,7 @@ mod facets;
 mod footprints;
 mod halving;
 mod hidden;
+mod lies;
 mod mesh;
 mod meshed;
 mod options;
@@ -38,6 +40,7 @@ mod rings;
 mod row;
 mod row_space;
 mod rows_once;
+mod rule;
 mod screens;
 mod seen;
 mod shaft;

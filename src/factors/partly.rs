@@ -6,13 +6,13 @@
 //! this one, it is cut where their shadows end, so that there are points on both sides of them, however narrow what is lit or hidden may be.
 
 use super::bodies::FacetSide;
-use super::cubature::{Outer, Rule, Sample};
 use super::element::{Element, Elements, quads};
 use super::facets::Facets;
 use super::hidden::{Bound, HiddenSpace, Target};
 use super::pieces::pieces;
 use super::quads::{Part, Quads};
 use super::row::Share;
+use super::rule::{Outer, Rule, Sample};
 use super::shape::{double_area, sides};
 use glam::{DVec2, DVec3};
 

@@ -1,7 +1,8 @@
 //! An element in quadrilaterals that have been integrated, the worst of which are divided next.
 
-use super::cubature::{Outer, Sample, halves};
+use super::cubature::halves;
 use super::row::Share;
+use super::rule::{Outer, Sample};
 use glam::DVec3;
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;

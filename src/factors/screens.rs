@@ -4,7 +4,7 @@ use super::bodies::{Body, FacetSide, MOST_FACETS};
 use super::contacts::TOUCHES;
 use super::element::{Element, Elements};
 use super::facets::Facets;
-use super::shaft::Lies;
+use super::lies::Lies;
 use super::shape::{Frame, sides};
 use glam::{DVec2, DVec3};
 use std::ops::Range;

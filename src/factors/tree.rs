@@ -1,7 +1,7 @@
 //! The elements of a facet, halved again and again in its plane.
 
+use super::blocker::Corner;
 use super::element::Element;
-use super::shaft::Corner;
 use super::shape::Frame;
 use glam::DVec2;
 use std::ops::Range;
