@@ -365,3 +365,48 @@ fn numbers_of_materials_are_named_with_their_line() {
     let what = "the emission of material \"\\u{1b}lamp\" is -2; it takes a finite number of at least 0";
     assert_eq!(err, format!("nusselt: a.mtl:3: {what}\n"));
 }
+
+/// Polygons on each other are told before rows of form factors are, which may take long for them: those of open bodies, face to face, and those that show the same way.
+#[test]
+fn polygons_on_each_other_are_told_before_form_factors() {
+    let folder = Folder::new("contacts");
+    let corners = |[low, high]: [[f64; 3]; 2]| -> String {
+        let corner = |k: usize| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] });
+        (0..8).map(corner).fold(String::new(), |text, [x, y, z]| text + &format!("v {x} {y} {z}\n"))
+    };
+    let faces = |first: usize, faces: &[[usize; 4]], outwards: bool| -> String {
+        let line = |text: String, face: &[usize; 4]| {
+            let mut face = face.map(|k| (first + k).to_string());
+            if outwards {
+                face.reverse();
+            }
+            text + &format!("f {}\n", face.join(" "))
+        };
+        faces.iter().fold(String::new(), line)
+    };
+    // Fronts inside, the one below first.
+    let all = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]];
+    let room = corners([[0.0; 3], [4.0, 3.0, 2.5]]) + &faces(1, &all, false);
+    let block = corners([[1.0, 1.0, 0.0], [2.0, 2.0, 1.0]]) + &faces(9, &all, true);
+    let other = corners([[1.5, 1.5, 0.0], [2.5, 2.5, 0.5]]);
+    let said = |name: &str, text: String| {
+        folder.write(name, text);
+        folder.run(&format!("form-factors {name} --rows 0..1 --tolerance 1e-2 --json"), 0)[1].clone()
+    };
+    assert_eq!(said("closed.obj", format!("{room}{block}{other}{}", faces(17, &all, true))), "");
+    // Without its top and the wall that would be in the block.
+    let open = said("open.obj", format!("{room}{block}{other}{}", faces(17, &[all[0], all[2], all[3], all[5]], true)));
+    assert!(
+        open.starts_with("nusselt: warning: polygons 0 and 12 lie on each other, face to face, but bodies"),
+        "{open}"
+    );
+    // Two triangles, turned by 0.7 about an axis.
+    let (sin, cos) = 0.7_f64.sin_cos();
+    let turned = |ring: [[f64; 2]; 3]| {
+        ring.iter().fold(String::new(), |text, [x, y]| text + &format!("v {x} {} {}\n", y * cos, y * sin))
+    };
+    let first = turned([[0.0, 0.0], [4.0, 0.0], [0.0, 3.0]]);
+    let second = turned([[0.3, 0.2], [1.7, 0.4], [0.6, 1.9]]);
+    let flush = said("flush.obj", format!("{first}{second}f 1 2 3\nf 4 5 6\n"));
+    assert!(flush.starts_with("nusselt: warning: polygons 0 and 1 show the same way and lie on each other"), "{flush}");
+}

@@ -179,6 +179,12 @@ impl Exchange {
         Ok(pairs.into_iter().filter_map(polygons).collect())
     }
 
+    /// The first two polygons that show the same way and lie on each other, in one plane only within rounding, as the facades of an annex flush with the building that it reaches into do in a model that has been turned: which of them is seen is for rounding to say, from each point
+    /// anew, so that rows which see them take long, and need not close. In one plane exactly, the lower number is seen.
+    pub fn overlap(&self) -> Option<[PolygonId; 2]> {
+        overlap(&self.facets, &self.elements, &self.shut)
+    }
+
     /// `F[from][to]` once more, by points on the patch that it is from and to the tolerance: what rows have comes from closed forms, or from points on the smaller of the two, and
     /// is the same number from both. `None` if there is no way but views: if either patch has several flat convex parts, lies on another one, or has too much in front of
     /// it, and where backs count. The cost is that of an entry.
@@ -219,8 +225,7 @@ impl Exchange {
             }
         }
         let TooLarge { residue, estimates } = failure.unwrap_or(TooLarge { residue: 0.0, estimates: 0.0 });
-        let overlap = overlap(&self.facets, &self.elements, &self.shut);
-        Err(ExchangeError::NotClosed { patch, residue, estimates, overlap })
+        Err(ExchangeError::NotClosed { patch, residue, estimates, overlap: self.overlap() })
     }
 
     pub(super) fn element_rows<'a>(&'a self, shared: &'a Shared) -> ElementRows<'a> {

@@ -102,3 +102,63 @@ pub(super) fn symmetric_weights(rows: &ViewedRows, areas: &[f64]) -> Vec<f64> {
     }
     weights
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of a room that are not reciprocal, as where backs count as their patches, have no weights for which exchange is symmetric: what comes out is what bounces added up are, all the same.
+    #[test]
+    fn what_is_not_symmetric_is_solved_too() {
+        // A small generator (Knuth's MMIX) of factors.
+        let mut state = 5_u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        let count = 24;
+        let factors: Vec<Vec<f64>> = (0..count)
+            .map(|_| {
+                let row: Vec<f64> = (0..count).map(|_| random().powi(4)).collect();
+                let sum: f64 = row.iter().sum();
+                row.into_iter().map(|factor| factor / sum).collect()
+            })
+            .collect();
+        let reflectance: Vec<DVec3> = (0..count).map(|_| DVec3::new(random(), 0.9, 0.9 + 0.1 * random())).collect();
+        let b: Vec<DVec3> = (0..count).map(|_| DVec3::new(random(), random(), 0.0)).collect();
+        let weights: Vec<DVec3> = reflectance.iter().map(|&rho| rho * random()).collect();
+        let bounce = |light: &[DVec3]| -> Vec<DVec3> {
+            let at = |row: &Vec<f64>| (0..count).map(|k| light[k] * reflectance[k] * row[k]).sum();
+            factors.iter().map(at).collect()
+        };
+        let mut added_up = b.clone();
+        for _ in 0..3000 {
+            added_up = bounce(&added_up).iter().zip(&b).map(|(&bounced, &b)| bounced + b).collect();
+        }
+        let mut residual = Residual::new(b, weights);
+        let left = |residual: &Residual| residual.left().iter().fold(0.0, |m: f64, r| m.max(r.abs().max_element()));
+        let mut steps = 0;
+        while left(&residual) > 1e-14 {
+            residual.reduce(&bounce(residual.left()));
+            steps += 1;
+            assert!(steps < 100, "{}", left(&residual));
+        }
+        for (found, expected) in residual.into_solution().into_iter().zip(added_up) {
+            // What is left, and rounding, over the tenth that is absorbed of a bounce.
+            assert!((found - expected).abs().max_element() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    /// Light of which nothing comes to an end is bounced on, and no number breaks.
+    #[test]
+    fn where_nothing_is_absorbed_bounces_are_added() {
+        let b = vec![DVec3::new(1.0, 0.0, 2f64.powi(-600)); 3];
+        let mut residual = Residual::new(b.clone(), vec![DVec3::ONE; 3]);
+        for _ in 0..20 {
+            let bounced = residual.left().to_vec();
+            residual.reduce(&bounced);
+        }
+        assert_eq!(residual.left(), b);
+        assert_eq!(residual.into_solution(), vec![DVec3::new(21.0, 0.0, 21.0 * 2f64.powi(-600)); 3]);
+    }
+}

@@ -113,7 +113,7 @@ impl FormFactors {
         let (scene, load_s) = load(file, outputs, &self.loading, common)?;
         let start = Instant::now();
         let exchange = self.prepare(file, &scene)?;
-        warn_of_half_shut(file, &exchange, common)?;
+        warn_of_contacts(file, &exchange, common)?;
         let mut times = Times::new(load_s, start.elapsed().as_secs_f64());
         let job = self.job(&scene, &exchange);
         let rows = job.manifest().map_err(|error| refused(file, error))?.rows();
@@ -204,14 +204,20 @@ impl FormFactors {
     }
 }
 
-/// Warns of polygons on each other of which it is not clear whether they shut each other off.
-fn warn_of_half_shut(file: &Path, exchange: &Exchange, common: &Common) -> Result<(), Failure> {
+/// Warns of polygons on each other of which it is not clear whether they shut each other off, or which of them is seen.
+fn warn_of_contacts(file: &Path, exchange: &Exchange, common: &Common) -> Result<(), Failure> {
     let pairs = exchange.half_shut().map_err(|error| Failure::about(file, &error))?;
     if let [[a, b], rest @ ..] = &pairs[..] {
         let more = if rest.is_empty() { String::new() } else { format!(" (and {} more pairs)", rest.len()) };
         common.warn(&format!(
             "polygons {a} and {b}{more} lie on each other, face to face, but bodies there overlap or are open: each sees what is before it, and \
              not the other; close the bodies (nusselt info tells of open edges and T-junctions) to have them shut off"
+        ));
+    }
+    if let Some([a, b]) = exchange.overlap() {
+        common.warn(&format!(
+            "polygons {a} and {b} show the same way and lie on each other within rounding, which tells which of them is seen: rows that see \
+             them take long and may not close; cut off one of them where the other one is"
         ));
     }
     Ok(())
