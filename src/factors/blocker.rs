@@ -184,12 +184,8 @@ impl Passes {
 
 #[cfg(test)]
 mod tests {
+    use super::super::shape::square;
     use super::*;
-
-    fn square(z: f64, half: f64, centre: [f64; 2]) -> Vec<DVec3> {
-        let [x, y] = centre;
-        [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]].map(|[u, v]| DVec3::new(x + half * u, y + half * v, z)).to_vec()
-    }
 
     #[test]
     fn lines_pass_inside_outside_or_both() {

@@ -123,12 +123,8 @@ fn common_side(points: impl Iterator<Item = DVec3> + Clone, plane: &Plane) -> Op
 
 #[cfg(test)]
 mod tests {
+    use super::super::shape::square;
     use super::*;
-
-    fn square(z: f64, half: f64, centre: [f64; 2]) -> Vec<DVec3> {
-        let [x, y] = centre;
-        [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]].map(|[u, v]| DVec3::new(x + half * u, y + half * v, z)).to_vec()
-    }
 
     #[test]
     fn a_shaft_excludes_what_touches_it_from_outside() {

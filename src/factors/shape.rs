@@ -103,6 +103,13 @@ pub(super) fn turn(p: DVec2, q: DVec2, r: DVec2) -> f64 {
     (q - p).perp_dot(r - p)
 }
 
+/// A square at a height.
+#[cfg(test)]
+pub(super) fn square(z: f64, half: f64, centre: [f64; 2]) -> Vec<DVec3> {
+    let [x, y] = centre;
+    [[-1., -1.], [1., -1.], [1., 1.], [-1., 1.]].map(|[u, v]| DVec3::new(x + half * u, y + half * v, z)).to_vec()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
