@@ -552,3 +552,69 @@ fn surfaces_are_finer_where_radiosity_changes_and_right_where_they_are_not() {
     let lit = at(DVec3::new(4.0, 4.0, 0.0)).expect("a corner");
     assert!(lit > 0.0 && lit < fine.radiosity.iter().map(|b| b.x).fold(0.0, f64::max));
 }
+
+/// A bright room and a dim one beside it: each is solved to the same part of its own light.
+#[test]
+fn a_dim_room_is_solved_as_if_there_were_no_bright_one() {
+    let corner = |k: usize, from: f64| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { from } else { from + 2.0 });
+    let faces = [[0, 1, 3, 2], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3], [4, 6, 7, 5]];
+    let faces = faces.map(|face| face.to_vec());
+    let (dim_reflectance, dim) = (0.9, 1e-7);
+    let mut builder = Scene::builder();
+    for (from, material) in [(0.0, material(0.5, 100.0)), (5.0, material(dim_reflectance, dim))] {
+        let vertices: Vec<[f64; 3]> = (0..8).map(|k| corner(k, from)).collect();
+        builder = builder.mesh(&vertices, &faces, material);
+    }
+    let scene = builder.build().expect("a scene");
+    let exchange = exchange(&scene, 1e-6);
+    let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+    let until = 1e-4;
+    solver.solve(until, |_| true).expect("solved");
+    assert!(solver.is_settled(until) && !solver.is_settled(1e-3 * until));
+    for b in &solver.radiosity()[6..] {
+        // What is left of what is emitted, times what it would become at most.
+        let expected = PI * dim / (1.0 - dim_reflectance);
+        assert!((b.x / expected - 1.0).abs() < until, "{} {expected}", b.x);
+    }
+    // And gone on with from what was kept of it, with the same bits.
+    let mut first = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+    first.solve(until, |solver| solver.state().shots < 30).expect("stopped");
+    let mut second = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+    second.resume(first.state().clone()).expect("resumed");
+    second.solve(until, |_| true).expect("solved");
+    assert_eq!(second.radiosity(), solver.radiosity());
+}
+
+/// Rooms of which hardly any light is taken, with all rows: shooting would take a thousand million bounces.
+#[test]
+fn bright_rooms_are_settled_at_once() {
+    for absorbed in [0.3, 1e-3, 1e-6, 1e-9] {
+        let reflectance = 1.0 - absorbed;
+        let scene = hollow(material(reflectance, 0.0), material(reflectance, 2.0));
+        let exchange = exchange(&scene, 1e-6);
+        let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+        assert!(!solver.settle(), "there are no rows yet");
+        solver.compute_rows(0, |_| Ok::<(), RadiosityError>(())).expect("rows");
+        assert!(solver.settle());
+        assert!(solver.is_settled(1e-12) && solver.balance().defect() < 1e-6, "{:?}", solver.balance());
+        // All that is emitted is absorbed: of the lid's 6 square units.
+        let arrives: f64 = solver
+            .radiosity()
+            .iter()
+            .zip(solver.emission())
+            .zip(exchange.patches())
+            .map(|((b, emission), patch)| (b.x - emission.x) / reflectance * patch.area)
+            .sum();
+        let expected = 6.0 * 2.0 * PI / (1.0 - reflectance);
+        // Sums of rows are 1 up to some 1e-16, which bounces multiply.
+        assert!((arrives / expected - 1.0).abs() < 1e-14 + 1e-15 / absorbed, "{absorbed:e}: {arrives} {expected}");
+    }
+    // Nothing is found where nothing is absorbed.
+    let scene = hollow(material(1.0, 0.0), material(1.0, 2.0));
+    let exchange = exchange(&scene, 1e-6);
+    let mut solver = Solver::new(&scene, &exchange, SolverOptions::default()).expect("a solver");
+    solver.compute_rows(0, |_| Ok::<(), RadiosityError>(())).expect("rows");
+    let before = solver.state().clone();
+    assert!(!solver.settle());
+    assert_eq!(solver.state(), &before);
+}

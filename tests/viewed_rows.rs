@@ -279,3 +279,27 @@ fn a_small_patch_beside_a_large_one_gets_what_it_sees() {
     let expected = 0.5 * PI;
     assert!((found.radiosity[1] - DVec3::splat(expected)).abs().max_element() < 0.02 * expected, "{found:?}");
 }
+
+/// A bright room and a dim one beside it: each is solved to the same part of its own light.
+#[test]
+fn a_dim_room_is_gathered_as_if_there_were_no_bright_one() {
+    let corner = |k: usize, from: f64| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { from } else { from + 2.0 });
+    let faces = [[0, 1, 3, 2], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3], [4, 6, 7, 5]];
+    let (dim_reflectance, dim) = (0.9, 1e-9);
+    let mut builder = Scene::builder();
+    for (from, diffuse, emission) in [(0.0, 0.5, 100.0), (5.0, dim_reflectance, dim)] {
+        let vertices: Vec<[f64; 3]> = (0..8).map(|k| corner(k, from)).collect();
+        let material = Material { diffuse: [diffuse; 3], emission: [emission; 3], ..Material::new("even") };
+        builder = builder.mesh(&vertices, &faces.map(|face| face.to_vec()), material);
+    }
+    let scene = builder.build().expect("a scene");
+    let mesh = PatchMesh::new(&scene, 1.0).expect("a mesh");
+    let exchange = exchange(&mesh, 1e-3);
+    let found = Gathered::new(&scene, &exchange, &viewed(&exchange, 0.5), 1e-4).expect("radiosities");
+    for (patch, b) in exchange.patches().iter().zip(&found.radiosity) {
+        if patch.polygon.index() >= 6 {
+            let expected = PI * dim / (1.0 - dim_reflectance);
+            assert!((b.x / expected - 1.0).abs() < 1e-4, "{} {expected}", b.x);
+        }
+    }
+}

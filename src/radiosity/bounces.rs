@@ -1,6 +1,7 @@
 //! Gathering, bounce by bounce, with form factors that are all there.
 
 use super::RadiosityError;
+use super::groups::{alone, firsts, join};
 use super::residual::{Residual, symmetric_weights};
 use crate::factors::{Exchange, ViewedRows};
 use crate::radiosity::solver::surfaces;
@@ -31,7 +32,7 @@ impl Gathered {
     }
 
     /// Gathers at every patch what all others have sent to it, first what they emit, then what they have reflected of that, and so on (Goral, Torrance, Greenberg and Battaile 1984), until what is
-    /// still to be sent is no more than `until` of the power that is emitted.
+    /// still to be sent is no more than `until` of the power that is emitted, in each group of patches that exchange light, directly or through others.
     ///
     /// Bounces are not just added up: they are combined so that least is left (generalized conjugate residuals; Eisenstat, Elman and Schultz, *Variational Iterative Methods for Nonsymmetric Systems of Linear Equations*, 1983). So
     /// there are few of them where surfaces reflect nearly all that they get, too. With what is left received at last, and nothing below what is emitted, what patches do not see gives them no light.
@@ -70,14 +71,31 @@ impl Gathered {
         // Relative to the largest, as their squares have to be numbers.
         let areas: Vec<f64> = exchange.patches().iter().map(|patch| patch.area).collect();
         let areas = relative(&areas);
-        let brightest = emission.iter().copied().fold(DVec3::ZERO, DVec3::max);
-        let unit = DVec3::select(brightest.cmpgt(DVec3::ZERO), brightest, DVec3::ONE);
-        let share = brightest / brightest.max_element();
-        let emitted = (0..count).map(|k| (emission[k] / unit * share).element_sum() * areas[k]).sum::<f64>();
-        // What part of the power that is emitted is reflected of some irradiance.
+        let groups = groups_of(rows);
+        let mut brightest = vec![DVec3::ZERO; count];
+        for (&group, &emission) in groups.iter().zip(&emission) {
+            brightest[group as usize] = brightest[group as usize].max(emission);
+        }
+        let unit = |k: usize| {
+            let brightest = brightest[groups[k] as usize];
+            DVec3::select(brightest.cmpgt(DVec3::ZERO), brightest, DVec3::ONE)
+        };
+        // The channels of a group's light, its brightest being 1.
+        let share = |k: usize| {
+            let brightest = brightest[groups[k] as usize];
+            brightest / brightest.max_element().max(f64::MIN_POSITIVE)
+        };
+        let in_groups = |value: &dyn Fn(usize) -> f64| {
+            let mut sums = vec![0.0; count];
+            (0..count).for_each(|k| sums[groups[k] as usize] += value(k));
+            sums
+        };
+        let emitted = in_groups(&|k| (emission[k] / unit(k) * share(k)).element_sum() * areas[k]);
+        // What part of the power that is emitted is reflected of some irradiance, in the group in which that is most.
         let part = |irradiance: &[DVec3]| {
-            let reflected = |k: usize| (reflectance[k] * irradiance[k].abs() * share).element_sum() * areas[k];
-            (0..count).map(reflected).sum::<f64>() / emitted
+            let reflected = in_groups(&|k| (reflectance[k] * irradiance[k].abs() * share(k)).element_sum() * areas[k]);
+            let parts = reflected.iter().zip(&emitted).filter(|&(_, &emitted)| emitted > 0.0);
+            parts.map(|(reflected, emitted)| reflected / emitted).fold(0.0, f64::max)
         };
         let gather = |sent: &[DVec3]| -> Vec<DVec3> {
             let at = |k: usize| rows.row(k).iter().map(|&(other, f)| sent[other as usize] * f).sum();
@@ -86,10 +104,10 @@ impl Gathered {
         if until >= 1.0 {
             return Ok(Self { radiosity: emission.clone(), emission, bounces: 0 });
         }
-        let received = gather(&emission.iter().map(|&e| e / unit).collect::<Vec<_>>());
+        let received = gather(&(0..count).map(|k| emission[k] / unit(k)).collect::<Vec<_>>());
         let weights = relative(&symmetric_weights(rows, &areas));
         let weights = weights.iter().zip(&reflectance).map(|(&weight, &rho)| weight * rho).collect();
-        let mut residual = Residual::new(received, weights);
+        let mut residual = Residual::new(received, weights, &groups);
         let (mut bounces, mut left) = (1, part(residual.left()));
         watch(left);
         let mut checked = left;
@@ -107,9 +125,22 @@ impl Gathered {
             }
         }
         let irradiance = residual.into_solution();
-        let radiosity = (0..count).map(|k| emission[k] + reflectance[k] * irradiance[k].max(DVec3::ZERO) * unit);
+        let radiosity = (0..count).map(|k| emission[k] + reflectance[k] * irradiance[k].max(DVec3::ZERO) * unit(k));
         Ok(Self { radiosity: radiosity.collect(), emission, bounces })
     }
+}
+
+/// For each patch the first one of those that it exchanges light with, directly or through others.
+fn groups_of(rows: &ViewedRows) -> Vec<u32> {
+    let mut groups = alone(rows.len());
+    for patch in 0..rows.len() {
+        for &(other, factor) in rows.row(patch) {
+            if factor > 0.0 {
+                join(&mut groups, patch as u32, other);
+            }
+        }
+    }
+    firsts(&groups)
 }
 
 /// Numbers over the largest of them.

@@ -13,6 +13,7 @@ mod bounces;
 mod corners;
 mod error;
 mod gather;
+mod groups;
 mod residual;
 mod rings;
 mod solver;

@@ -15,8 +15,12 @@ const NOTHING: f64 = 1e-24;
 ///
 /// The measure is the sum of squares of r by weights. With weights D times the reflectance, where D are those of [`symmetric_weights`], T is symmetric, and it is as if all directions were remembered
 /// (conjugate residuals; Stiefel 1955): the steps are as many as T has eigenvalues that are apart, such as one near 1 for each closed room that is bright.
+///
+/// Groups between which nothing bounces are apart, too.
 pub(super) struct Residual {
     weights: Vec<DVec3>,
+    /// The number of the group of each.
+    groups: Vec<u32>,
     solution: Vec<DVec3>,
     left: Vec<DVec3>,
     past: VecDeque<Direction>,
@@ -25,15 +29,16 @@ pub(super) struct Residual {
 /// A direction that was gone in.
 struct Direction {
     step: Vec<DVec3>,
-    /// What one step takes from what is left, and the sum of its squares; 0 in channels in which it was not gone.
+    /// What one step takes from what is left, and for each group the sum of its squares; 0 in channels in which it was not gone.
     change: Vec<DVec3>,
-    size: DVec3,
+    sizes: Vec<DVec3>,
 }
 
 impl Residual {
-    /// From nothing: all of b is left.
-    pub(super) fn new(b: Vec<DVec3>, weights: Vec<DVec3>) -> Self {
-        Self { weights, solution: vec![DVec3::ZERO; b.len()], left: b, past: VecDeque::new() }
+    /// From nothing: all of b is left. `groups` are numbers below that of patches, one for each of them.
+    pub(super) fn new(b: Vec<DVec3>, weights: Vec<DVec3>, groups: &[u32]) -> Self {
+        let groups = groups.to_vec();
+        Self { weights, groups, solution: vec![DVec3::ZERO; b.len()], left: b, past: VecDeque::new() }
     }
 
     /// What is left.
@@ -45,24 +50,33 @@ impl Residual {
     pub(super) fn reduce(&mut self, bounced: &[DVec3]) {
         let whole: Vec<DVec3> = self.left.iter().zip(bounced).map(|(&r, &t)| r - t).collect();
         let (mut step, mut change) = (self.left.clone(), whole.clone());
+        let of = |sums: &[DVec3], k: usize| sums[self.groups[k] as usize];
         for past in &self.past {
-            let along = self.product(&change, &past.change) / past.size;
-            let along = DVec3::select(past.size.cmpgt(DVec3::ZERO), along, DVec3::ZERO);
-            step.iter_mut().zip(&past.step).for_each(|(own, &other)| *own -= along * other);
-            change.iter_mut().zip(&past.change).for_each(|(own, &other)| *own -= along * other);
+            let mut along = self.products(&change, &past.change);
+            for (along, &size) in along.iter_mut().zip(&past.sizes) {
+                *along = DVec3::select(size.cmpgt(DVec3::ZERO), *along / size, DVec3::ZERO);
+            }
+            for k in 0..step.len() {
+                step[k] -= of(&along, k) * past.step[k];
+                change[k] -= of(&along, k) * past.change[k];
+            }
         }
-        let size = self.product(&change, &change);
-        let far = self.product(&self.left, &change) / size;
-        // Then it is one bounce that is added.
-        let is_plain = size.cmple(NOTHING * self.product(&self.left, &self.left));
+        let mut sizes = self.products(&change, &change);
+        let (far, most) = (self.products(&self.left, &change), self.products(&self.left, &self.left));
         for k in 0..self.left.len() {
-            self.solution[k] += DVec3::select(is_plain, self.left[k], far * step[k]);
-            self.left[k] -= DVec3::select(is_plain, whole[k], far * change[k]);
+            let (far, size, most) = (of(&far, k), of(&sizes, k), of(&most, k));
+            // Then it is one bounce that is added.
+            let is_plain = size.cmple(NOTHING * most);
+            self.solution[k] += DVec3::select(is_plain, self.left[k], far / size * step[k]);
+            self.left[k] -= DVec3::select(is_plain, whole[k], far / size * change[k]);
+        }
+        for (size, &most) in sizes.iter_mut().zip(&most) {
+            *size = DVec3::select(size.cmple(NOTHING * most), DVec3::ZERO, *size);
         }
         if self.past.len() == DIRECTIONS {
             self.past.pop_front();
         }
-        self.past.push_back(Direction { step, change, size: DVec3::select(is_plain, DVec3::ZERO, size) });
+        self.past.push_back(Direction { step, change, sizes });
     }
 
     /// The solution, with what is left added: one bounce of it is all that is wrong then.
@@ -70,8 +84,13 @@ impl Residual {
         self.solution.iter().zip(self.left).map(|(&x, r)| x + r).collect()
     }
 
-    fn product(&self, a: &[DVec3], b: &[DVec3]) -> DVec3 {
-        self.weights.iter().zip(a.iter().zip(b)).map(|(&weight, (&a, &b))| weight * a * b).sum()
+    /// For each group, channel by channel.
+    fn products(&self, a: &[DVec3], b: &[DVec3]) -> Vec<DVec3> {
+        let mut sums = vec![DVec3::ZERO; self.groups.len()];
+        for (k, &group) in self.groups.iter().enumerate() {
+            sums[group as usize] += self.weights[k] * a[k] * b[k];
+        }
+        sums
     }
 }
 
@@ -135,7 +154,7 @@ mod tests {
         for _ in 0..3000 {
             added_up = bounce(&added_up).iter().zip(&b).map(|(&bounced, &b)| bounced + b).collect();
         }
-        let mut residual = Residual::new(b, weights);
+        let mut residual = Residual::new(b, weights, &[0; 24]);
         let left = |residual: &Residual| residual.left().iter().fold(0.0, |m: f64, r| m.max(r.abs().max_element()));
         let mut steps = 0;
         while left(&residual) > 1e-14 {
@@ -153,7 +172,7 @@ mod tests {
     #[test]
     fn where_nothing_is_absorbed_bounces_are_added() {
         let b = vec![DVec3::new(1.0, 0.0, 2f64.powi(-600)); 3];
-        let mut residual = Residual::new(b.clone(), vec![DVec3::ONE; 3]);
+        let mut residual = Residual::new(b.clone(), vec![DVec3::ONE; 3], &[0; 3]);
         for _ in 0..20 {
             let bounced = residual.left().to_vec();
             residual.reduce(&bounced);

@@ -1,5 +1,8 @@
 //! Progressive refinement.
 
+mod settle;
+
+use super::groups::{alone, firsts, join};
 use super::{Balance, RadiosityError, strength};
 use crate::factors::{Exchange, PatchInfo, Row, RowsOnce};
 use crate::parallel;
@@ -52,6 +55,8 @@ pub struct SolverState {
     pub guess: Vec<DVec3>,
     /// So many patches have sent that, in their order.
     pub guessed: usize,
+    /// For each patch itself, or one of a lower number that it is known to exchange light with, directly or through others. May be empty for a start.
+    pub groups: Vec<u32>,
 }
 
 /// Solves for the radiosities of the patches of a scene by shooting: whatever has most left to send sends it.
@@ -93,7 +98,8 @@ impl<'a> Solver<'a> {
     pub fn new(scene: &Scene, exchange: &'a Exchange, options: SolverOptions) -> Result<Self, RadiosityError> {
         let (emission, reflectance) = surfaces(scene, exchange)?;
         check_parts(exchange.patches(), &emission)?;
-        let state = SolverState { radiosity: emission.clone(), unshot: emission.clone(), ..SolverState::default() };
+        let (radiosity, unshot, groups) = (emission.clone(), emission.clone(), alone(emission.len()));
+        let state = SolverState { radiosity, unshot, groups, ..SolverState::default() };
         let rows = vec![None; emission.len()];
         let source = RowsOnce::new(exchange);
         Ok(Self { exchange, options, emission, reflectance, state, source, rows, kept_entries: 0 })
@@ -116,7 +122,8 @@ impl<'a> Solver<'a> {
     pub fn resume(&mut self, state: SolverState) -> Result<(), RadiosityError> {
         let expected = self.emission.len();
         let guess = if state.guess.is_empty() { expected } else { state.guess.len() };
-        for found in [state.radiosity.len(), state.unshot.len(), guess] {
+        let groups = if state.groups.is_empty() { expected } else { state.groups.len() };
+        for found in [state.radiosity.len(), state.unshot.len(), groups, guess] {
             if found != expected {
                 return Err(RadiosityError::OtherState { found, expected });
             }
@@ -124,7 +131,8 @@ impl<'a> Solver<'a> {
         let is_bad = |v: &DVec3| !v.is_finite();
         let first_bad = |list: &[DVec3]| list.iter().position(is_bad);
         let lists = [&state.radiosity, &state.unshot, &state.guess];
-        let bad = lists.into_iter().filter_map(|list| first_bad(list)).min();
+        let bad_group = (0..).zip(&state.groups).position(|(patch, &group)| group > patch);
+        let bad = lists.into_iter().filter_map(|list| first_bad(list)).chain(bad_group).min();
         // Nor may any of their powers be more than numbers hold.
         let is_bad_power = |list: &Vec<DVec3>| is_bad(&(ROOM * self.power(list)));
         if let Some(patch) = bad.or((state.gone.iter().any(is_bad) || lists.into_iter().any(is_bad_power)).then_some(0))
@@ -132,6 +140,9 @@ impl<'a> Solver<'a> {
             return Err(RadiosityError::BadState { patch });
         }
         self.state = state;
+        if self.state.groups.is_empty() {
+            self.state.groups = alone(expected);
+        }
         Ok(())
     }
 
@@ -201,6 +212,11 @@ impl<'a> Solver<'a> {
     /// # Errors
     /// If there is no row of form factors for one of them.
     pub fn shoot(&mut self) -> Result<Vec<Shot>, RadiosityError> {
+        self.shoot_from(|_| true)
+    }
+
+    /// The same, of those patches that may.
+    fn shoot_from(&mut self, may_shoot: impl Fn(usize) -> bool) -> Result<Vec<Shot>, RadiosityError> {
         let batch = self.options.batch.max(1);
         if self.is_guessing() {
             let end = (self.state.guessed + batch).min(self.state.guess.len());
@@ -218,8 +234,9 @@ impl<'a> Solver<'a> {
         let anticipated = self.anticipated();
         let to_send = |patch: usize| self.state.unshot[patch] + self.reflectance[patch] * anticipated;
         let left = |patch: usize| strength(to_send(patch).abs()) * self.area(patch);
+        let patches = (0..self.emission.len()).filter(|&patch| may_shoot(patch));
         let mut order: Vec<(f64, usize)> =
-            (0..self.emission.len()).map(|patch| (left(patch), patch)).filter(|(power, _)| *power > 0.0).collect();
+            patches.map(|patch| (left(patch), patch)).filter(|(power, _)| *power > 0.0).collect();
         order.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         order.truncate(batch);
         let patches: Vec<usize> = order.into_iter().map(|(_, patch)| patch).collect();
@@ -293,6 +310,7 @@ impl<'a> Solver<'a> {
         let power = radiosity * self.area(patch);
         for entry in &row.entries {
             let receiver = entry.column as usize;
+            join(&mut self.state.groups, patch as u32, entry.column);
             let arrives = power * entry.share.factor;
             let reflected = arrives * self.reflectance[receiver];
             let radiosity = reflected / self.area(receiver);
@@ -306,29 +324,58 @@ impl<'a> Solver<'a> {
         Shot { patch, power }
     }
 
-    /// Shoots until at most that part of what is emitted is left; `watch` sees the solver after every batch, and ends it by returning false. With rows of all patches kept, and
+    /// For each patch the first one of its group, and for each of these what part of the power that is emitted in the group is yet to be sent there, or was sent too much; where nothing is emitted, of all that is.
+    fn left_in_groups(&self) -> (Vec<u32>, Vec<f64>) {
+        let firsts = firsts(&self.state.groups);
+        let (mut emitted, mut left) = (vec![DVec3::ZERO; firsts.len()], vec![DVec3::ZERO; firsts.len()]);
+        let mut whole = DVec3::ZERO;
+        for (patch, &first) in firsts.iter().enumerate() {
+            emitted[first as usize] += self.emission[patch] * self.area(patch);
+            left[first as usize] += self.state.unshot[patch].abs() * self.area(patch);
+            whole += self.emission[patch] * self.area(patch);
+        }
+        let part = |(left, emitted): (&DVec3, &DVec3)| {
+            let emitted = if *emitted == DVec3::ZERO { whole } else { *emitted };
+            // Numbers do not hold parts of less.
+            left.element_sum() / emitted.element_sum().max(FAINT)
+        };
+        let parts = left.iter().zip(&emitted).map(part).collect();
+        (firsts, parts)
+    }
+
+    /// True if nothing but at most that part of what is emitted is left to be sent, in each group of patches that exchange light, directly or through others.
+    pub fn is_settled(&self, until: f64) -> bool {
+        !self.is_guessing() && self.left_in_groups().1.iter().all(|&left| left <= until)
+    }
+
+    /// Shoots until at most that part of what is emitted is left, in each group of patches that exchange light, directly or through others: a dim room is solved as well as it would be without a bright one that it does not see.
+    /// `watch` sees the solver after every batch, and ends it by returning false. After [`Solver::settle`], and with
     /// a small part, this is the full-matrix solution.
     ///
     /// # Errors
     /// As [`Solver::shoot`]; also if it would not end, as less than 1e-9 of what is left is absorbed while every patch shoots twenty times.
     pub fn solve(&mut self, until: f64, mut watch: impl FnMut(&Self) -> bool) -> Result<(), RadiosityError> {
-        let mut checked = (self.state.shots, self.balance().unshot_fraction());
-        while self.is_guessing() || self.balance().unshot_fraction() > until {
+        let mut checked = (self.state.shots, f64::INFINITY);
+        loop {
             let was_guessing = self.is_guessing();
-            if self.shoot()?.is_empty() && !was_guessing || !watch(self) {
-                break;
+            let (firsts, left) = self.left_in_groups();
+            let sum: f64 = left.iter().filter(|&&left| left > until).sum();
+            if !was_guessing && sum <= 0.0 {
+                return Ok(());
+            }
+            let shots = self.shoot_from(|patch| left[firsts[patch] as usize] > until)?;
+            if shots.is_empty() && !was_guessing || !watch(self) {
+                return Ok(());
             }
             // All patches have shot many times, and as much is left.
             let patience = 20 * self.emission.len() + 1000;
             if self.state.shots - checked.0 > patience {
-                let left = self.balance().unshot_fraction();
-                if left > checked.1 * (1.0 - 1e-9) {
+                if sum > checked.1 * (1.0 - 1e-9) {
                     return Err(RadiosityError::Endless { shots: self.state.shots });
                 }
-                checked = (self.state.shots, left);
+                checked = (self.state.shots, sum);
             }
         }
-        Ok(())
     }
 }
 

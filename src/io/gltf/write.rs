@@ -10,7 +10,7 @@ use std::io::{self, Error, ErrorKind, Write};
 pub struct GlbMesh {
     /// The name of the node and of the mesh.
     pub name: String,
-    /// The corners. The file has them as `f32`: what is equal here stays equal there.
+    /// The corners. The file has them as `f32`, from an origin that is near to all meshes: what is equal here stays equal there.
     pub positions: Vec<DVec3>,
     /// A colour for each corner, linear red, green and blue; empty for none.
     pub colors: Vec<[f32; 3]>,
@@ -21,17 +21,22 @@ pub struct GlbMesh {
 }
 
 /// Writes meshes as a GLB file (glTF 2.0), each as a node of its own. Surfaces are shown as coloured, without light
-/// (`KHR_materials_unlit`), from both sides; coordinates stay as they are, without a swap of axes.
+/// (`KHR_materials_unlit`), from both sides; coordinates stay as they are, without a swap of axes. What is farther from the origin along an axis than it is long has nodes with a translation there, so that
+/// corners are rounded by some 6e-8 of the size of all meshes, as in a city in the coordinates of its country, and not of their distance from the origin.
 ///
 /// # Errors
-/// If writing fails, a mesh has no triangles, a number is not finite as `f32`, a triangle has a corner that is not there, there are
+/// If writing fails, a mesh has no triangles, [`check_positions`] refuses all corners, a colour is not finite, a triangle has a corner that is not there, there are
 /// not as many colours as corners, or the file would be longer than 4 GiB.
 pub fn write_glb(out: &mut impl Write, meshes: &[GlbMesh]) -> io::Result<()> {
+    let invalid = |what: String| Error::new(ErrorKind::InvalidInput, what);
+    let corners = || meshes.iter().flat_map(|mesh| &mesh.positions);
+    let origin = origin(corners());
+    check_about(origin, corners()).map_err(invalid)?;
     let mut binary = Binary::default();
     let (mut materials, mut nodes, mut all) = (Vec::<Value>::new(), Vec::new(), Vec::new());
     let mut colors: Vec<[u32; 3]> = Vec::new();
     for (mesh, k) in meshes.iter().zip(0..) {
-        check(mesh).map_err(|what| Error::new(ErrorKind::InvalidInput, format!("mesh {}: {what}", mesh.name)))?;
+        check(mesh).map_err(|what| invalid(format!("mesh {}: {what}", mesh.name)))?;
         let color = mesh.color.map(f32::to_bits);
         let material = colors.iter().position(|known| *known == color).unwrap_or(colors.len());
         if material == colors.len() {
@@ -42,7 +47,7 @@ pub fn write_glb(out: &mut impl Write, meshes: &[GlbMesh]) -> io::Result<()> {
                 "doubleSided": true, "extensions": { "KHR_materials_unlit": {} },
             }));
         }
-        let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|p| p.as_vec3().to_array()).collect();
+        let positions: Vec<[f32; 3]> = mesh.positions.iter().map(|&p| (p - origin).as_vec3().to_array()).collect();
         let bound = |pick: fn(f32, f32) -> f32| {
             positions.iter().copied().reduce(|a, b| std::array::from_fn(|axis| pick(a[axis], b[axis])))
         };
@@ -54,7 +59,11 @@ pub fn write_glb(out: &mut impl Write, meshes: &[GlbMesh]) -> io::Result<()> {
         let indices = binary.indices(&mesh.triangles);
         let primitive = json!({ "attributes": attributes, "indices": indices, "material": material, "mode": 4 });
         all.push(json!({ "name": mesh.name, "primitives": [primitive] }));
-        nodes.push(json!({ "name": mesh.name, "mesh": k }));
+        let mut node = json!({ "name": mesh.name, "mesh": k });
+        if origin != DVec3::ZERO {
+            node["translation"] = json!(origin.to_array());
+        }
+        nodes.push(node);
     }
     let mut document = json!({
         "asset": { "version": "2.0", "generator": concat!("nusselt ", env!("CARGO_PKG_VERSION")) },
@@ -108,7 +117,6 @@ fn check(mesh: &GlbMesh) -> Result<(), String> {
     if !mesh.colors.is_empty() && mesh.colors.len() != count {
         return Err(format!("there are {} colours for {count} corners", mesh.colors.len()));
     }
-    check_positions(&mesh.positions)?;
     let colors = mesh.colors.iter().chain([&mesh.color]);
     if colors.flatten().any(|x| !x.is_finite()) {
         return Err("a colour is not finite".to_owned());
@@ -116,15 +124,47 @@ fn check(mesh: &GlbMesh) -> Result<(), String> {
     Ok(())
 }
 
-/// Checks that a file has room for coordinates, which are `f32` there: at most 3.4e38.
+/// Checks that a file can show corners, the coordinates of which are `f32` there: at most 3.4e38, and at least 1e-30 for the largest.
 ///
 /// # Errors
-/// If one is not; it names the first.
+/// If it cannot.
 pub fn check_positions(positions: &[DVec3]) -> Result<(), String> {
-    match positions.iter().find(|p| !p.as_vec3().is_finite()) {
-        Some(p) => Err(format!("the corner {:?} is not finite as f32, of which GLB files are", p.to_array())),
-        None => Ok(()),
+    check_about(origin(positions.iter()), positions.iter())
+}
+
+fn check_about<'a>(origin: DVec3, positions: impl Iterator<Item = &'a DVec3>) -> Result<(), String> {
+    let mut most = 0.0;
+    for p in positions {
+        let off = *p - origin;
+        if !p.as_vec3().is_finite() {
+            return Err(format!("the corner {:?} is not finite as f32, of which GLB files are", p.to_array()));
+        }
+        most = off.abs().max_element().max(most);
     }
+    if most > 0.0 && most < LEAST {
+        return Err(format!("corners are {most:e} apart at most, too little for f32, of which GLB files are"));
+    }
+    Ok(())
+}
+
+/// Below this, numbers that are `f32` lose digits.
+const LEAST: f64 = 1e-30;
+
+/// What is to be the origin of corners: along each axis 0, or their lowest or highest coordinate if they are farther from 0 than apart. No difference is rounded: none is of numbers of which one is more than twice the
+/// other (Sterbenz 1974).
+fn origin<'a>(positions: impl Iterator<Item = &'a DVec3>) -> DVec3 {
+    let [low, high] =
+        positions.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], &p| [low.min(p), high.max(p)]);
+    let origin = |low: f64, high: f64| {
+        if low > 0.0 && 0.5 * high <= low {
+            low
+        } else if high < 0.0 && 0.5 * low >= high {
+            high
+        } else {
+            0.0
+        }
+    };
+    DVec3::new(origin(low.x, high.x), origin(low.y, high.y), origin(low.z, high.z))
 }
 
 const FLOATS: u32 = 5126;
@@ -198,6 +238,36 @@ mod tests {
         assert_eq!(corners, [DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), DVec3::Y]);
     }
 
+    /// A square of 1 at the coordinates of a country, and one of 0.5 beside it: read again they are where they were, to rounding of f32 about their size.
+    #[test]
+    fn what_is_far_away_keeps_its_shape() {
+        let place = DVec3::new(465_000.25, -5_432_000.5, 0.0);
+        let moved = |mut mesh: GlbMesh, size: f64| {
+            mesh.positions.iter_mut().for_each(|p| *p = *p * size + place);
+            mesh
+        };
+        let meshes = [moved(square("a"), 1.0), moved(square("b"), 0.5)];
+        let mut file = Vec::new();
+        write_glb(&mut file, &meshes).expect("written");
+        let path = std::env::temp_dir().join(format!("nusselt-far-{}.glb", std::process::id()));
+        std::fs::write(&path, &file).expect("a file");
+        let loaded = read_scene(&path, &ReadOptions::default());
+        std::fs::remove_file(&path).expect("removed");
+        let scene = loaded.expect("read").scene;
+        let corners: Vec<DVec3> = scene.pieces().nth(3).expect("a piece").points().collect();
+        assert_eq!(corners, [place, place + DVec3::new(0.5, 0.5, 0.0), place + DVec3::Y * 0.5]);
+        // Nothing is moved that is about the origin, nor along an axis on which it is.
+        let text = String::from_utf8_lossy(&file).into_owned();
+        assert!(text.contains("\"translation\":[465000.25,-5431999.5,0.0]"), "{text}");
+        let mut near = Vec::new();
+        write_glb(&mut near, &[square("a")]).expect("written");
+        assert!(!String::from_utf8_lossy(&near).contains("translation"));
+        // What would be no more than a point is refused.
+        let tiny = GlbMesh { positions: square("m").positions.iter().map(|&p| p * 1e-40).collect(), ..square("m") };
+        let error = write_glb(&mut Vec::new(), &[tiny]).expect_err("refused").to_string();
+        assert!(error.contains("corners are 1e-40 apart at most"), "{error}");
+    }
+
     #[test]
     fn nothing_is_a_file_too_and_what_is_wrong_is_refused() {
         let mut file = Vec::new();
@@ -212,7 +282,7 @@ mod tests {
         ];
         for (mesh, what) in wrong {
             let error = write_glb(&mut Vec::new(), &[mesh]).expect_err("refused").to_string();
-            assert!(error.starts_with("mesh m: ") && error.contains(what), "{error}");
+            assert!(error.contains(what) && (error.starts_with("mesh m: ") || what.contains("f32")), "{error}");
         }
     }
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::io::{self, Write};
 
 /// The schema's name.
-pub const STATE_SCHEMA: &str = "nusselt.radiosity-state/2";
+pub const STATE_SCHEMA: &str = "nusselt.radiosity-state/3";
 
 /// What a state belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,6 +63,9 @@ pub enum StateError {
     /// It is no state, or one of another version.
     #[error("it is not a state of this version: {0}; leave out --resume to start anew")]
     Malformed(String),
+    /// Its numbers are not those that were written.
+    #[error("some of its numbers have been changed or damaged; leave out --resume to start anew")]
+    Damaged,
     /// It belongs to something else.
     #[error("it is for {what}; leave out --resume to start anew")]
     Other {
@@ -83,6 +86,25 @@ struct Kept {
     unshot: Vec<[f64; 3]>,
     guess: Vec<[f64; 3]>,
     guessed: usize,
+    groups: Vec<u32>,
+    /// Of all numbers above: against accidents, not against forgery.
+    digest: Digest,
+}
+
+impl Kept {
+    fn numbers(&self) -> Digest {
+        let whole = |digest: Digest, number: usize| digest.with(&(number as u64).to_le_bytes());
+        let colours = |digest: Digest, list: &[[f64; 3]]| {
+            list.iter().flatten().fold(whole(digest, list.len()), |digest, x| digest.with(&x.to_bits().to_le_bytes()))
+        };
+        let patches = |digest: Digest, list: &Vec<u32>| {
+            list.iter().fold(whole(digest, list.len()), |digest, &patch| whole(digest, patch as usize))
+        };
+        let digest = self.halved.iter().fold(whole(Digest::EMPTY, self.halved.len()), patches);
+        let digest = patches(digest, &self.groups);
+        let digest = [self.shots, self.guessed].into_iter().fold(digest, whole);
+        [&self.gone[..], &self.radiosity, &self.unshot, &self.guess].into_iter().fold(digest, colours)
+    }
 }
 
 /// Writes a state.
@@ -91,7 +113,7 @@ struct Kept {
 /// Those of `out`.
 pub fn write_state(key: &StateKey, halved: &[Vec<u32>], solver: &SolverState, out: &mut impl Write) -> io::Result<()> {
     let list = |colours: &[DVec3]| colours.iter().map(DVec3::to_array).collect();
-    let kept = Kept {
+    let mut kept = Kept {
         schema: STATE_SCHEMA.to_owned(),
         key: *key,
         halved: halved.to_vec(),
@@ -101,7 +123,10 @@ pub fn write_state(key: &StateKey, halved: &[Vec<u32>], solver: &SolverState, ou
         unshot: list(&solver.unshot),
         guess: list(&solver.guess),
         guessed: solver.guessed,
+        groups: solver.groups.clone(),
+        digest: Digest::EMPTY,
     };
+    kept.digest = kept.numbers();
     serde_json::to_writer(out, &kept).map_err(io::Error::from)
 }
 
@@ -124,6 +149,9 @@ pub fn read_state(key: &StateKey, text: &str) -> Result<KeptState, StateError> {
     if let Some((_, what)) = differs.into_iter().find(|(differs, _)| *differs) {
         return Err(StateError::Other { what });
     }
+    if kept.digest != kept.numbers() {
+        return Err(StateError::Damaged);
+    }
     let list = |colours: Vec<[f64; 3]>| colours.into_iter().map(DVec3::from).collect();
     let solver = SolverState {
         radiosity: list(kept.radiosity),
@@ -132,6 +160,7 @@ pub fn read_state(key: &StateKey, text: &str) -> Result<KeptState, StateError> {
         shots: kept.shots,
         guess: list(kept.guess),
         guessed: kept.guessed,
+        groups: kept.groups,
     };
     Ok(KeptState { halved: kept.halved, solver })
 }

@@ -48,7 +48,7 @@ pub(crate) struct Radiosity {
     /// Halve patches on which radiosities differ by more than this part of their mean, or of the mean of all surfaces if that is more
     #[arg(long, value_name = "PART", default_value = "0.5", requires = "subdivide", value_parser = parse_size, allow_hyphen_values = true)]
     gradient: f64,
-    /// Stop when so much of the emitted power is left to be sent
+    /// Stop when so much of the emitted power is left to be sent, in each group of surfaces that exchange light
     #[arg(long, value_name = "FRACTION", default_value = "0.01", value_parser = parse_fraction, allow_hyphen_values = true)]
     until: f64,
     /// Solve the whole matrix instead: all rows of form factors are computed, and nothing but rounding (1e-12) is left

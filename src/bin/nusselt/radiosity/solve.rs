@@ -143,8 +143,13 @@ impl Work<'_> {
     }
 
     fn solve_stage(&self, keeping: &Keeping, stage: &Stage, solver: &mut Solver<'_>) -> Result<(), Failure> {
-        let is_solved = !solver.is_guessing() && solver.balance().unshot_fraction() <= self.until();
+        let is_solved = solver.is_settled(self.until());
         let rows = if self.asked.full && !is_solved { self.compute_rows(keeping, stage, solver)? } else { None };
+        if self.asked.full && !is_solved {
+            // What was guessed is sent first.
+            solver.solve(f64::INFINITY, |_| true).map_err(|error| self.asked.about(&error))?;
+            solver.settle();
+        }
         let mut progress = Progress::new("shots", None, self.quiet);
         let mut kept = Instant::now();
         let mut shots = solver.state().shots;

@@ -29,7 +29,7 @@ pub(super) struct Interreflection {
     /// units [default: a 12th of the scene's diagonal]
     #[arg(long, value_name = "SIZE", value_parser = parse_size, allow_hyphen_values = true)]
     patch: Option<f64>,
-    /// Stop when so much of the emitted power is left to be sent
+    /// Stop when so much of the emitted power is left to be sent, in each group of surfaces that exchange light
     #[arg(long, value_name = "FRACTION", default_value = "1e-4", value_parser = parse_fraction, allow_hyphen_values = true)]
     until: f64,
     /// Compute each form factor between patches to this absolute error and shoot with them, as radiosity does; slower [default: by one to
