@@ -1,7 +1,7 @@
 //! Gathering, bounce by bounce, with form factors that are all there.
 
 use super::RadiosityError;
-use super::groups::{alone, firsts, join};
+use super::groups::{GAPS, alone, firsts, join};
 use super::residual::{Residual, symmetric_weights};
 use crate::factors::{Exchange, ViewedRows};
 use crate::radiosity::solver::surfaces;
@@ -135,7 +135,7 @@ fn groups_of(rows: &ViewedRows) -> Vec<u32> {
     let mut groups = alone(rows.len());
     for patch in 0..rows.len() {
         for &(other, factor) in rows.row(patch) {
-            if factor > 0.0 {
+            if factor > GAPS {
                 join(&mut groups, patch as u32, other);
             }
         }

@@ -2,6 +2,9 @@
 //!
 //! Each is solved to the same part of what is emitted in it, as if it were alone: beside a bright room a dim one is no rounding.
 
+/// Gaps that rounding leaves where polygons meet show no larger factors: what is seen through them joins no groups.
+pub(super) const GAPS: f64 = 1e-9;
+
 /// Every patch alone, as patches of lower numbers, or themselves, that they are grouped with.
 pub(super) fn alone(count: usize) -> Vec<u32> {
     (0..count as u32).collect()

@@ -2,7 +2,7 @@
 
 mod settle;
 
-use super::groups::{alone, firsts, join};
+use super::groups::{GAPS, alone, firsts, join};
 use super::{Balance, RadiosityError, strength};
 use crate::factors::{Exchange, PatchInfo, Row, RowsOnce};
 use crate::parallel;
@@ -310,7 +310,9 @@ impl<'a> Solver<'a> {
         let power = radiosity * self.area(patch);
         for entry in &row.entries {
             let receiver = entry.column as usize;
-            join(&mut self.state.groups, patch as u32, entry.column);
+            if entry.share.factor > entry.share.error.max(GAPS) {
+                join(&mut self.state.groups, patch as u32, entry.column);
+            }
             let arrives = power * entry.share.factor;
             let reflected = arrives * self.reflectance[receiver];
             let radiosity = reflected / self.area(receiver);

@@ -1,7 +1,8 @@
 //! All that is left sent at once, where the rows of all patches are kept.
 
 use super::Solver;
-use crate::radiosity::groups::{firsts, join};
+use crate::factors::Share;
+use crate::radiosity::groups::{GAPS, firsts, join};
 use crate::radiosity::residual::Residual;
 use glam::DVec3;
 
@@ -41,7 +42,9 @@ impl Solver<'_> {
         let count = rows.len();
         let mut groups = self.state.groups.clone();
         for row in &rows {
-            row.entries.iter().for_each(|entry| join(&mut groups, row.patch, entry.column));
+            let is_some = |share: Share| share.factor > share.error.max(GAPS);
+            let entries = row.entries.iter().filter(|entry| is_some(entry.share));
+            entries.for_each(|entry| join(&mut groups, row.patch, entry.column));
         }
         let groups = firsts(&groups);
         // As parts of the largest there is in the group, as squares have to be numbers.
