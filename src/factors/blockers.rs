@@ -6,12 +6,18 @@ use super::element::{Element, Elements};
 use super::facets::Facets;
 use super::lies::Lies;
 use super::shaft::Shaft;
+use super::shape::sides;
 use super::tree::ElementTree;
 use crate::bvh::Content;
 use crate::contour::SceneOrder;
 use crate::exact::U;
 use crate::scene::Side;
 use glam::{DVec2, DVec3};
+
+/// What is no farther from an element than this part of its size is near it.
+const NEAR: f64 = 1.0 / 32.0;
+/// Most of what changes beside a side that is near does so within so many times its distance.
+const BESIDE: f64 = 4.0;
 
 /// Where all facets are, seen from one: each to the plane of this one, and this one to the plane of each.
 pub(super) struct Around {
@@ -144,7 +150,7 @@ impl Blockers<'_> {
                 found(element, seen, &mut blockers.iter().map(|&blocker| candidates[blocker as usize].facet));
             }
         };
-        if self.facets.all[facet as usize].is_covered {
+        if self.facets.all[facet as usize].is_ranked {
             return all(root, Seen::Unknown, &[], &[]);
         }
         let target = &self.facets.all[facet as usize];
@@ -212,12 +218,36 @@ impl Blockers<'_> {
         }
     }
 
-    /// An element in parts between the lines where facets stand on it or pass through it.
+    /// An element in parts between the lines where facets stand on it or pass through it, or come near it with a side: from one point to the next what is seen changes there within about that distance.
     pub(super) fn parts(&self, element: &Element) -> Vec<Vec<DVec3>> {
         let frame = &self.elements.frames[element.facet as usize];
         // Corners of a mesh are rounded.
         let reach = element.radius * (1e-12 + element.rounding) + TOUCHES;
-        parts(element, frame, &self.contacts(element.facet, &element.ring, reach))
+        let mut segments = self.contacts(element.facet, &element.ring, reach);
+        self.near_sides(element, &mut segments);
+        parts(element, frame, &segments)
+    }
+
+    /// Adds the sides of facets that are near an element all along, as they lie before it.
+    fn near_sides(&self, element: &Element, segments: &mut Vec<[DVec2; 2]>) {
+        let reach = NEAR * element.radius;
+        let low = element.ring.iter().fold(DVec3::INFINITY, |low, &p| low.min(p)) - reach;
+        let high = element.ring.iter().fold(DVec3::NEG_INFINITY, |high, &p| high.max(p)) + reach;
+        let frame = &self.elements.frames[element.facet as usize];
+        let others = self.within(
+            |&other| other != element.facet,
+            |other_low, other_high| low.cmple(other_high).all() && high.cmpge(other_low).all(),
+        );
+        for other in others {
+            let is_near = |p: DVec3| (TOUCHES..=reach).contains(&frame.height(p));
+            let near = sides(&self.facets.all[other as usize].ring).filter(|side| side.iter().all(|&p| is_near(p)));
+            for side in near {
+                let beside = BESIDE * side.iter().map(|&p| frame.height(p)).fold(0.0, f64::max);
+                let [a, b] = side.map(|p| frame.flat(p));
+                let across = (b - a).perp().normalize_or_zero() * beside;
+                segments.extend([[a, b], [a + across, b + across], [a - across, b - across]]);
+            }
+        }
     }
 
     /// Where facets stand on a part of a facet or pass through it, in its plane, if they are not farther from it than that; some of the segments may be beside it.

@@ -97,6 +97,9 @@ impl ElementRows<'_> {
         if let Some(touch) = touches.iter().find(|touch| touch.other == other) {
             return Some(from_one(touch.exchange, from));
         }
+        if [number, other].into_iter().any(|element| self.looker.shut.is_whole(element)) {
+            return Some(Share::default());
+        }
         self.stand_on(from, space);
         space.parts = self.open_parts(number, &mut space.look);
         let RowSpace { around: Some(around), parts, hidden, .. } = space else { return None };

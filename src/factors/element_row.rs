@@ -74,12 +74,14 @@ impl ElementRows<'_> {
             self.listen(number, space);
         }
         self.touch(number, space)?;
-        let is_covered = space.parts.is_empty();
+        let is_shut = self.looker.shut.is_whole(number);
+        let is_covered = is_shut || space.parts.is_empty();
         if !is_covered {
             self.classify(number, tolerance * OF_TOLERANCE, space);
             self.integrate_all(number, effort, space);
         }
-        if effort.is_shared && self.is_shareable(number) {
+        // What is covered, but not shut for all, is for others to find out.
+        if effort.is_shared && self.is_shareable(number) && (is_shut || !is_covered) {
             self.shared.complete(number, &space.told);
         }
         // In an order that does not depend on who has told what.
@@ -185,7 +187,7 @@ impl ElementRows<'_> {
         let Element { patch, facet, .. } = elements.all[number as usize];
         self.looker.sides == Sides::Fronts
             && elements.of_patch[patch as usize].len() == 1
-            && !self.blockers.facets.all[facet as usize].is_covered
+            && !self.blockers.facets.all[facet as usize].is_ranked
     }
 
     /// The facets whose fronts may be seen.
@@ -209,7 +211,9 @@ impl ElementRows<'_> {
         space: &'s mut RowSpace,
     ) -> Cubature<'s, impl FnMut(DVec3, Add<'_>) -> Result<(), ExchangeError>> {
         let RowSpace { look, scratch, found, parts, .. } = space;
-        let takes_views = |element: u32| matches!(found.seen[element as usize], Seen::Partly | Seen::Unknown);
+        let takes_views = |element: u32| {
+            matches!(found.seen[element as usize], Seen::Partly | Seen::Unknown) && !self.looker.shut.is_whole(element)
+        };
         let look = move |point: DVec3, add: Add<'_>| self.looker.look(look, from.facet, point, takes_views, add);
         Cubature { parts, area: from.area, allowed, scratch, look }
     }
@@ -223,7 +227,7 @@ impl ElementRows<'_> {
             let is_unknown = self.looker.shut.is_between(from.facet, facet);
             let RowSpace { around: Some(around), found, hiders, told, .. } = &mut *space else { return };
             let Found { seen: how, known, between: places, facets, is_told } = found;
-            let is_told = |element: u32| is_told[element as usize];
+            let is_told = |element: u32| is_told[element as usize] || self.looker.shut.is_whole(element);
             self.blockers.classify(around, from, facet, hiders, is_told, |element, seen, between| {
                 let first = facets.len() as u32;
                 facets.extend(between);

@@ -9,7 +9,7 @@ use super::lies::Lies;
 use super::placement::Placement;
 use crate::bvh::{self, SceneBvh, Solid};
 use crate::contour::SceneOrder;
-use crate::scene::{FaceSpec, Material, PieceId, Scene, SceneError};
+use crate::scene::{CoplanarOverlap, FaceSpec, Material, PieceId, PieceRef, PolygonId, Scene, SceneError};
 use glam::DVec3;
 use std::ops::Range;
 
@@ -40,8 +40,10 @@ pub(super) struct Facet {
     pub(super) spanning: [DVec3; 3],
     /// The box around it.
     pub(super) bounds: [DVec3; 2],
-    /// True if another facet may lie on part of it in its plane: which one is seen there takes a view.
+    /// True if another facet may lie on part of it in its plane.
     pub(super) is_covered: bool,
+    /// True if one that shows the same way may: which of them is seen there is for numbers to say, and takes a view. (Of two that show different ways, fronts are seen.)
+    pub(super) is_ranked: bool,
     /// The solid of the scene that it is part of; its box is that of the scene, not scaled.
     pub(super) solid: Option<Solid>,
 }
@@ -54,8 +56,18 @@ impl Facets {
     pub(super) fn of(scene: &Scene) -> Result<Self, SceneError> {
         let (overlaps, all) = scene.coplanar_overlaps();
         let mut is_covered = vec![!all; scene.polygon_count()];
-        for polygon in overlaps.iter().flat_map(|overlap| overlap.polygons) {
-            is_covered[polygon.index()] = true;
+        let mut is_ranked = is_covered.clone();
+        let is_planar = |polygon: &PolygonId| {
+            let mut planes = scene.polygon(*polygon).pieces().map(PieceRef::plane_id);
+            planes.next().is_none_or(|first| planes.all(|plane| plane == first))
+        };
+        for CoplanarOverlap { polygons, opposed, .. } in &overlaps {
+            // Of others parts may show either way.
+            let is_opposed = *opposed && polygons.iter().all(is_planar);
+            for polygon in polygons {
+                is_covered[polygon.index()] = true;
+                is_ranked[polygon.index()] |= !is_opposed;
+            }
         }
         let covered = |piece: PieceId| is_covered[scene.piece(piece).polygon().index()];
         let joined = bvh::facets(scene, |a, b| !covered(a) && !covered(b));
@@ -77,7 +89,9 @@ impl Facets {
             let low = ring.iter().copied().fold(DVec3::INFINITY, DVec3::min);
             let high = ring.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
             let bounds = [low, high];
-            facets.push(Facet { ring, spanning, bounds, is_covered: covered(joined.pieces[0]), solid: joined.solid });
+            let polygon = scene.piece(joined.pieces[0]).polygon().index();
+            let [is_covered, is_ranked] = [is_covered[polygon], is_ranked[polygon]];
+            facets.push(Facet { ring, spanning, bounds, is_covered, is_ranked, solid: joined.solid });
             let ring = joined.ring.iter().map(|vertex| vertex.index()).collect();
             builder.add_face(FaceSpec { rings: vec![ring], object, material });
         }

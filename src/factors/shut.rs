@@ -7,10 +7,11 @@ use super::ExchangeError;
 use super::blockers::Blockers;
 use super::bodies::MOST_FACETS;
 use super::contacts::{TOUCHES, take_out};
+use super::element::Element;
 use super::facets::{Facet, Facets};
 use super::seen::{Before, LookSpace, Looker};
 use super::shape::Frame;
-use super::touching::{apart, in_both, middle, within};
+use super::touching::{apart, in_both, middle, strip, within};
 use crate::bvh::Solid;
 use crate::parallel;
 use crate::scene::Side;
@@ -24,6 +25,8 @@ pub(super) struct Shut {
     regions: Vec<Vec<Region>>,
     /// The facets of which it may see what is shut, ascending.
     seen: Vec<Vec<u32>>,
+    /// For each element whether all of it is shut.
+    whole: Vec<bool>,
 }
 
 #[derive(Clone)]
@@ -50,7 +53,8 @@ impl Shut {
             shut_parts(blockers, looker, touching, pair).map(|(parts, is_all)| (pair, parts, is_all))
         });
         let convex = ConvexSolids::of(facets, frames);
-        let mut found = Self { regions: vec![Vec::new(); touching.len()], seen: vec![Vec::new(); touching.len()] };
+        let (regions, seen) = (vec![Vec::new(); touching.len()], vec![Vec::new(); touching.len()]);
+        let mut found = Self { regions, seen, whole: Vec::new() };
         for shut in shut {
             let ([a, b], parts, is_whole) = shut?;
             if parts.is_empty() {
@@ -78,7 +82,20 @@ impl Shut {
             facets.sort_unstable();
             facets.dedup();
         }
+        let is_whole = |element: &Element| {
+            let mut parts = vec![element.ring.clone()];
+            for region in &found.regions[element.facet as usize] {
+                take_out(&mut parts, &frames[element.facet as usize], &region.ring, strip(element));
+            }
+            parts.is_empty()
+        };
+        found.whole = blockers.elements.all.iter().map(is_whole).collect();
         Ok(found)
+    }
+
+    /// True if all of an element is shut: nothing sees it but what shuts it.
+    pub(super) fn is_whole(&self, element: u32) -> bool {
+        self.whole.get(element as usize).is_some_and(|&is_whole| is_whole)
     }
 
     /// The parts of what two elements of these facets have in common that are shut, and whether it is all; as it is in the frame of the first of the facets.
