@@ -193,3 +193,43 @@ fn sign<const C: usize>(columns: &[i128; C]) -> Sign {
         Sign::Positive
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_bigint::BigInt;
+
+    #[test]
+    fn narrow_cross_products_are_exact_in_digits_of_one_sign() {
+        let mut state = 1u64;
+        let mut random = |bits: u32| {
+            let mut word = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                u128::from(state >> 32)
+            };
+            let magnitude = word() << 96 | word() << 64 | word() << 32 | word();
+            let most = (1i128 << bits) - 1;
+            match word() % 4 {
+                0 => most,
+                1 => -most,
+                2 => (magnitude >> 2) as i128 & most,
+                _ => -((magnitude >> 2) as i128 & most),
+            }
+        };
+        // On both sides of where two digits are enough, and up to the widest.
+        for bits in [1, 53, 59, 60, 61, 118, 119, 120, 125, 126] {
+            for _ in 0..100 {
+                let [a, b] = [0, 1].map(|_| [0, 1, 2].map(|_| random(bits)));
+                let digits = narrow_cross(a, b);
+                for (component, (i, j)) in digits.iter().zip([(1, 2), (2, 0), (0, 1)]) {
+                    let expected = BigInt::from(a[i]) * b[j] - BigInt::from(a[j]) * b[i];
+                    let sum = component.iter().rev().fold(BigInt::ZERO, |sum, &digit| (sum << DIGIT) + digit);
+                    assert_eq!(sum, expected, "{a:?} {b:?}");
+                    assert!(component.iter().all(|digit| digit.abs() >> DIGIT == 0), "{component:?}");
+                    let has = |sign: i64| component.iter().any(|digit| digit.signum() == sign);
+                    assert!(!(has(1) && has(-1)), "{component:?}");
+                }
+            }
+        }
+    }
+}
