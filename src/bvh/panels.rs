@@ -14,7 +14,7 @@ use std::collections::BinaryHeap;
 use std::ops::Range;
 
 /// A panel has at most so many pieces (docs/performance.md): what fills much of the image comes in parts with depths of their own.
-pub(super) const MOST_PIECES: u32 = 64;
+pub(super) const MOST_PIECES: u32 = 1024;
 /// Pieces with more sides are panels by themselves.
 const MOST_SIDES: usize = 16;
 
@@ -325,6 +325,7 @@ fn next(k: usize, sides: &[FragmentSide]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::super::SceneBvh;
+    use super::MOST_PIECES;
     use crate::exact::orient3d;
     use crate::scene::{Material, PieceRef, Scene};
     use glam::DVec3;
@@ -389,9 +390,9 @@ mod tests {
         assert_eq!(sizes(&wall(4, 4, flat)), [16]);
         assert_eq!(sizes(&wall(1, 1, flat)), [1]);
         assert_eq!(sizes(&wall(3, 5, flat)), [15]);
-        // Of 12 x 12 tiles no panel has more than 64, and there are few of them.
-        let large = sizes(&wall(12, 12, flat));
-        assert!(large.iter().sum::<u32>() == 144 && large[0] <= 64 && large.len() <= 6, "{large:?}");
+        // Of 40 x 40 tiles no panel has more than `MOST_PIECES`, and there are few of them.
+        let large = sizes(&wall(40, 40, flat));
+        assert!(large.iter().sum::<u32>() == 1600 && large[0] <= MOST_PIECES && large.len() <= 6, "{large:?}");
         // Slanted, exactly in one plane; its tiles are planes of their own.
         assert_eq!(sizes(&wall(4, 4, |x, y| [x, y, 2.0 * x + 3.0 * y])), [16]);
     }

@@ -95,7 +95,9 @@ pub(crate) struct Directions {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct ExactCache {
     arena: Arena,
-    normals: FxHashMap<CircleId, Kept3>,
+    /// Of great circles, and which one of each is, from 1, if it was needed: 0 if not, as for those that are not there.
+    normals: Vec<Kept3>,
+    normal_of: Vec<u32>,
     points: FxHashMap<PointId, Kept3>,
     /// Of points that are not the scene's, by their bits.
     towards: FxHashMap<[u64; 3], Kept3>,
@@ -114,9 +116,10 @@ impl ExactCache {
 
     /// Forgets everything but the memory.
     pub(crate) fn clear(&mut self) {
-        let Self { arena, normals, points, towards, undecided, calls } = self;
+        let Self { arena, normals, normal_of, points, towards, undecided, calls } = self;
         arena.clear();
         normals.clear();
+        normal_of.clear();
         points.clear();
         towards.clear();
         (*undecided, *calls) = (PredicateStats::default(), 0);
@@ -408,13 +411,25 @@ impl Directions {
         }
     }
 
+    #[inline]
     fn exact_normal(&self, skeleton: &Skeleton, c: CircleId, cache: &mut ExactCache) -> Kept3 {
-        if let Some(&known) = cache.normals.get(&c) {
-            return known;
+        match cache.normal_of.get(c.0 as usize) {
+            Some(&place) if place != 0 => cache.normals[place as usize - 1],
+            _ => self.new_exact_normal(skeleton, c, cache),
         }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn new_exact_normal(&self, skeleton: &Skeleton, c: CircleId, cache: &mut ExactCache) -> Kept3 {
         let definition = self.resolved(skeleton, c);
         let normal = Constructor { frame: &self.frame, arena: &mut cache.arena }.keep_splitter(&definition);
-        cache.normals.insert(c, normal);
+        cache.normals.push(normal);
+        let circle = c.0 as usize;
+        if cache.normal_of.len() <= circle {
+            cache.normal_of.resize(circle + 1, 0);
+        }
+        cache.normal_of[circle] = cache.normals.len() as u32;
         normal
     }
 

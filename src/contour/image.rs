@@ -212,12 +212,12 @@ impl<'a> Cell<'a> {
 
     /// Its corners as unit directions, counter-clockwise seen from outside of the sphere. Rounded:
     /// slivers may repeat a direction.
-    pub fn boundary(self) -> impl ExactSizeIterator<Item = DVec3> + 'a {
+    pub fn boundary(self) -> impl ExactSizeIterator<Item = DVec3> + Clone + 'a {
         self.arcs().iter().map(move |arc| self.image.tree.directions.unit(arc.from))
     }
 
     /// The numbers of its corners among the directions of the image.
-    pub(crate) fn corners(self) -> impl ExactSizeIterator<Item = usize> + 'a {
+    pub(crate) fn corners(self) -> impl ExactSizeIterator<Item = usize> + Clone + 'a {
         self.arcs().iter().map(|arc| arc.from.0 as usize)
     }
 

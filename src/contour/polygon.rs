@@ -170,13 +170,12 @@ impl Knife {
         }
         let normal = directions.normal(circle);
         let (mut positive, mut negative, mut known) = (0u64, 0u64, 0u64);
-        let mut bit = 1;
-        for arc in polygon {
-            let (is_positive, is_negative) = directions.approximation(arc.from).dot_sides(normal);
-            positive |= if is_positive { bit } else { 0 };
-            negative |= if is_negative { bit } else { 0 };
-            known |= bit;
-            bit <<= 1;
+        // The first corner has the lowest bit.
+        for arc in polygon.iter().rev() {
+            let [is_positive, is_negative] = directions.approximation(arc.from).dot_bits(normal);
+            positive = positive << 1 | is_positive;
+            negative = negative << 1 | is_negative;
+            known = known << 1 | 1;
         }
         let mut open = known & !(positive | negative);
         while open != 0 {

@@ -406,12 +406,19 @@ impl ContourTree {
                 return None;
             }
             *visited += 1;
-            match seen.side(self.directions.normal(node.circle)) {
-                Some(side) => link = if side.is_positive() { node.positive() } else { node.negative() },
+            match self.child_around(node, seen) {
+                Some(child) => link = child,
                 None => break,
             }
         }
         Some(link)
+    }
+
+    /// What is on the side of a node that all of the box is certainly on, if it is.
+    #[inline]
+    fn child_around(&self, node: &TreeNode, seen: &SeenBox) -> Option<Link> {
+        let [is_negative, is_positive] = seen.sides(self.directions.normal(node.circle));
+        (is_negative | is_positive).then(|| Link::unpacked(node.children[usize::from(is_positive)]))
     }
 
     /// The two parts of a polygon that is put in and was classified last.
@@ -486,20 +493,27 @@ impl ContourTree {
     /// may meet is filled by what is nearer. Errs only towards false. The projection is all on the side of `top` where that is.
     pub(crate) fn hides(&self, top: Link, seen: &SeenBox, near: f64, work: &mut Workspace) -> bool {
         work.links.clear();
-        work.links.push(top);
-        while let Some(link) = work.links.pop() {
+        let mut link = top;
+        loop {
             if self.link_far(link) <= near {
+                let Some(next) = work.links.pop() else { return true };
+                link = next;
                 continue;
             }
             let Link::Node(node) = link else { return false };
             let node = &self.nodes[node as usize];
-            match seen.side(self.directions.normal(node.circle)) {
-                Some(Sign::Positive) => work.links.push(node.positive()),
-                Some(_) => work.links.push(node.negative()),
-                None => work.links.extend([node.negative(), node.positive()]),
-            }
+            link = self.child_around(node, seen).unwrap_or_else(|| {
+                // Where it is farther, something is more likely to be seen: that ends it.
+                let [negative, positive] = [node.negative(), node.positive()];
+                let [nearer, farther] = if self.link_far(negative) > self.link_far(positive) {
+                    [positive, negative]
+                } else {
+                    [negative, positive]
+                };
+                work.links.push(nearer);
+                farther
+            });
         }
-        true
     }
 }
 
@@ -509,11 +523,7 @@ impl ContourTree {
         let mut link = top;
         while let Link::Node(number) = link {
             let node = &self.nodes[number as usize];
-            let child = match seen.side(self.directions.normal(node.circle)) {
-                Some(Sign::Positive) => node.positive(),
-                Some(_) => node.negative(),
-                None => break,
-            };
+            let Some(child) = self.child_around(node, seen) else { break };
             // A leaf may become a node later, and then it is only a part of it.
             if let Link::Leaf(_) = child {
                 break;

@@ -100,8 +100,8 @@ pub struct ViewStats {
 fn default_depth(polygons: usize, domain: &Domain) -> u32 {
     match polygons {
         _ if matches!(domain, Domain::Window(_)) => 0,
-        0..5_000 => 1,
-        5_000..30_000 => 2,
+        0..30_000 => 1,
+        30_000..100_000 => 2,
         _ => 3,
     }
 }

@@ -128,11 +128,13 @@ impl Approx3 {
         decided(self.v.dot(other.v), self.slack + other.slack)
     }
 
-    /// Whether the dot product of the two real vectors is certainly positive, and whether it is certainly negative: as [`Approx3::dot_sign`].
+    /// Whether the dot product of the two real vectors is certainly positive, and whether it is certainly negative, as [`Approx3::dot_sign`]: 1 if so, 0 if not.
+    ///
+    /// The sign of a difference is never rounded away, and that of 0 is positive: so no comparison is needed, nor a branch.
     #[inline]
-    pub(crate) fn dot_sides(&self, other: &Self) -> (bool, bool) {
+    pub(crate) fn dot_bits(&self, other: &Self) -> [u64; 2] {
         let (x, bound) = (self.v.dot(other.v), self.slack + other.slack);
-        (x > bound, x < -bound)
+        [bound - x, bound + x].map(|rest| rest.to_bits() >> 63)
     }
 
     /// The sign of the determinant `self . (b x c)` of the three real vectors, if f64 can tell.

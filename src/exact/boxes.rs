@@ -33,9 +33,23 @@ impl SeenBox {
     /// The normal is off by `slack / 8` in each component.
     #[inline]
     pub(crate) fn side(&self, normal: &Approx3) -> Option<Sign> {
-        let height = normal.v.dot(self.center);
-        let reach = normal.v.abs().dot(self.half) + self.margin + normal.slack * self.size;
+        let [height, reach] = self.height(normal);
         decided(height, reach)
+    }
+
+    /// Whether all of the box certainly lies on the negative side of that plane, and whether on the positive one: what [`SeenBox::side`] tells, without a
+    /// branch on it.
+    #[inline]
+    pub(crate) fn sides(&self, normal: &Approx3) -> [bool; 2] {
+        let [height, reach] = self.height(normal);
+        [height < -reach, height > reach]
+    }
+
+    /// The height of the middle over a plane, and how far the heights of the box's points may be from that.
+    #[inline]
+    fn height(&self, normal: &Approx3) -> [f64; 2] {
+        let reach = normal.v.abs().dot(self.half) + self.margin + normal.slack * self.size;
+        [normal.v.dot(self.center), reach]
     }
 }
 
@@ -75,7 +89,9 @@ mod tests {
             } else {
                 None
             };
-            prop_assert_eq!(SeenBox::new(from, low, high).side(&Approx3::given(normal)), side);
+            let (seen, normal) = (SeenBox::new(from, low, high), Approx3::given(normal));
+            prop_assert_eq!(seen.side(&normal), side);
+            prop_assert_eq!(seen.sides(&normal), [Sign::Negative, Sign::Positive].map(|sign| side == Some(sign)));
         }
     }
 

@@ -56,11 +56,12 @@ pub(crate) fn det_sign<const W: usize, const C: usize, const R: usize>(
     sign(&sums)
 }
 
-/// `a x b` in signs and magnitudes: `C` is `2 W`, and digits are in `[0, 2^60)` but for the last.
+/// `a x b` in signs, which are 0 or -1, and magnitudes: `C` is `2 W`, and digits are in `[0, 2^60)` but for the last.
 #[inline]
-fn cross<const W: usize, const C: usize>(a: &Fixed3<W>, b: &Fixed3<W>) -> [(bool, [i64; C]); 3] {
+fn cross<const W: usize, const C: usize>(a: &Fixed3<W>, b: &Fixed3<W>) -> [(i64, [i64; C]); 3] {
     const { assert!(W <= MOST_DIGITS && C == 2 * W) };
-    [(1, 2), (2, 0), (0, 1)].map(|(i, j)| {
+    let mut components = [(0, [0; C]); 3];
+    for (component, (i, j)) in components.iter_mut().zip([(1, 2), (2, 0), (0, 1)]) {
         let mut columns = [0; C];
         for p in 0..W {
             for q in 0..W {
@@ -68,8 +69,23 @@ fn cross<const W: usize, const C: usize>(a: &Fixed3<W>, b: &Fixed3<W>) -> [(bool
             }
         }
         let digits = carried(&columns);
-        if digits[C - 1] < 0 { (true, carried(&columns.map(|column| -column))) } else { (false, digits) }
-    })
+        let sign = digits[C - 1] >> 63;
+        *component = (sign, magnitude(digits, sign));
+    }
+    components
+}
+
+/// The number with those digits, carried over, times a sign: 0 for 1, or -1.
+#[inline]
+fn magnitude<const C: usize>(mut digits: [i64; C], sign: i64) -> [i64; C] {
+    let mut carry = 0;
+    for digit in &mut digits[..C - 1] {
+        let sum = (*digit ^ sign) - sign + carry;
+        *digit = sum & MASK as i64;
+        carry = sum >> DIGIT;
+    }
+    digits[C - 1] = (digits[C - 1] ^ sign) - sign + carry;
+    digits
 }
 
 /// `a x b` up to a positive factor, each component off by at most `2 u` of the largest. `C` is `2 W`.
@@ -80,16 +96,30 @@ fn cross<const W: usize, const C: usize>(a: &Fixed3<W>, b: &Fixed3<W>) -> [(bool
 pub(crate) fn rounded_cross<const W: usize, const C: usize>(a: &Fixed3<W>, b: &Fixed3<W>) -> DVec3 {
     let components = cross::<W, C>(a, b);
     let top = (1..C).rev().find(|&d| components.iter().any(|(_, digits)| digits[d] != 0)).unwrap_or(1);
-    DVec3::from(components.map(|(negative, digits)| {
+    let mut rounded = DVec3::ZERO;
+    for (axis, (sign, digits)) in components.iter().enumerate() {
         let pair = ((digits[top] as u128) << DIGIT | digits[top - 1] as u128) as f64;
-        if negative { -pair } else { pair }
-    }))
+        rounded[axis] = if *sign < 0 { -pair } else { pair };
+    }
+    rounded
 }
 
-/// `a x b` for vectors of 126 bits: below `2^253`, so that the last digit is one like the others.
+/// `a x b` for vectors of 126 bits: below `2^253`, so that the last digit is one like the others. With 119 bits, which most scenes do with, below
+/// `2^239`: four digits hold it.
 pub(crate) fn narrow_cross(a: [i128; 3], b: [i128; 3]) -> Fixed3<6> {
-    let components = cross::<3, 6>(&a.map(of_i128), &b.map(of_i128));
-    components.map(|(negative, digits)| if negative { digits.map(|digit| -digit) } else { digits })
+    let most = a.iter().chain(&b).fold(0, |most, x| most | x.unsigned_abs());
+    let mut digits = [[0; 6]; 3];
+    if most >> 119 == 0 {
+        let two = |v: [i128; 3]| v.map(of_i128).map(|[low, high, _]| [low, high]);
+        for (component, (sign, four)) in digits.iter_mut().zip(cross::<2, 4>(&two(a), &two(b))) {
+            component[..4].copy_from_slice(&four.map(|digit| (digit ^ sign) - sign));
+        }
+    } else {
+        for (component, (sign, six)) in digits.iter_mut().zip(cross::<3, 6>(&a.map(of_i128), &b.map(of_i128))) {
+            *component = six.map(|digit| (digit ^ sign) - sign);
+        }
+    }
+    digits
 }
 
 /// The sign of `a . b` for vectors of up to four components. `C` is `2 W - 1`.
@@ -161,5 +191,45 @@ fn sign<const C: usize>(columns: &[i128; C]) -> Sign {
         Sign::Zero
     } else {
         Sign::Positive
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_bigint::BigInt;
+
+    #[test]
+    fn narrow_cross_products_are_exact_in_digits_of_one_sign() {
+        let mut state = 1u64;
+        let mut random = |bits: u32| {
+            let mut word = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                u128::from(state >> 32)
+            };
+            let magnitude = word() << 96 | word() << 64 | word() << 32 | word();
+            let most = (1i128 << bits) - 1;
+            match word() % 4 {
+                0 => most,
+                1 => -most,
+                2 => (magnitude >> 2) as i128 & most,
+                _ => -((magnitude >> 2) as i128 & most),
+            }
+        };
+        // On both sides of where two digits are enough, and up to the widest.
+        for bits in [1, 53, 59, 60, 61, 118, 119, 120, 125, 126] {
+            for _ in 0..100 {
+                let [a, b] = [0, 1].map(|_| [0, 1, 2].map(|_| random(bits)));
+                let digits = narrow_cross(a, b);
+                for (component, (i, j)) in digits.iter().zip([(1, 2), (2, 0), (0, 1)]) {
+                    let expected = BigInt::from(a[i]) * b[j] - BigInt::from(a[j]) * b[i];
+                    let sum = component.iter().rev().fold(BigInt::ZERO, |sum, &digit| (sum << DIGIT) + digit);
+                    assert_eq!(sum, expected, "{a:?} {b:?}");
+                    assert!(component.iter().all(|digit| digit.abs() >> DIGIT == 0), "{component:?}");
+                    let has = |sign: i64| component.iter().any(|digit| digit.signum() == sign);
+                    assert!(!(has(1) && has(-1)), "{component:?}");
+                }
+            }
+        }
     }
 }

@@ -23,43 +23,52 @@ impl Receiver {
 
     /// The unit direction of a vector of moderate length, turned. Turning moves it by some 1e-16, as does rounding it to `f64`. Not a number for the null vector.
     pub(crate) fn turned(&self, vector: DVec3) -> DVec3 {
-        let turned = DVec3::from(self.axes.map(|axis| axis.dot(vector)));
-        turned / vector.length()
+        let [u, v, normal] = &self.axes;
+        DVec3::new(u.dot(vector), v.dot(vector), normal.dot(vector)) / vector.length()
     }
 
-    /// The form factor to a convex polygon with those turned unit corners, counter-clockwise seen from outside of the sphere, of which
-    /// the first is there again at the end. Never negative.
+    /// The form factor to a convex polygon with those turned unit corners, counter-clockwise seen from outside of the sphere. Never negative.
     ///
     /// The corners count as exact: the error is below 2e-16 times (the value + the polygon's perimeter times its diameter).
-    pub(crate) fn factor(ring: &[DVec3]) -> f64 {
-        let first = ring.first_chunk().map_or(0.0, |[a, b]| sine_squared(*b - *a));
+    pub(crate) fn factor(corners: impl Iterator<Item = DVec3> + Clone) -> f64 {
+        let mut rest = corners.clone();
+        let first = rest.next().zip(rest.next()).map_or(0.0, |(a, b)| sine_squared(b - a));
         // Most cells are small. In others the first arc often shows that already.
         let (mut double, mut all) = (0.0, first);
         if all < SHORT {
-            (double, all) = double_flux(ring, series::<6>);
+            (double, all) = double_flux(corners.clone(), series::<6>);
         }
         if (SHORT..LONG).contains(&all) {
-            (double, all) = double_flux(ring, series::<12>);
+            (double, all) = double_flux(corners.clone(), series::<12>);
         }
-        if all < LONG {
-            // No arc is longer.
-        } else if ring.windows(2).all(|arc| sine_squared(arc[1] - arc[0]) < 0.49) {
-            double = double_flux(ring, |h| if h < LONG { series::<12>(h) } else { quotient(h) }).0;
-        } else {
-            // Arcs of 90 degrees and more are halved there, and what is no direction is left out.
-            return form_factor(ring, DVec3::Z);
-        }
-        let factor = double / TAU;
-        if factor > 0.0 { factor } else { 0.0 }
+        // Beyond that an arc may be longer.
+        if all < LONG { share(double) } else { factor_of_large(&corners.collect::<Vec<_>>()) }
     }
 
     /// The same to a polygon with those corners, of moderate lengths, in memory that is used again.
     pub(crate) fn factor_of(&self, corners: impl Iterator<Item = DVec3>, ring: &mut Vec<DVec3>) -> f64 {
         ring.clear();
         ring.extend(corners.map(|corner| self.turned(corner)));
-        ring.extend(ring.first().copied());
-        Self::factor(ring)
+        Self::factor(ring.iter().copied())
     }
+}
+
+/// [`Receiver::factor`] to a polygon of any size.
+#[cold]
+fn factor_of_large(corners: &[DVec3]) -> f64 {
+    let next = corners.iter().cycle().skip(1);
+    if corners.iter().zip(next).all(|(a, b)| sine_squared(*b - *a) < 0.49) {
+        share(double_flux(corners.iter().copied(), |h| if h < LONG { series::<12>(h) } else { quotient(h) }).0)
+    } else {
+        // Arcs of 90 degrees and more are halved there, and what is no direction is left out.
+        form_factor(corners, DVec3::Z)
+    }
+}
+
+/// The form factor, from twice the flux.
+fn share(double_flux: f64) -> f64 {
+    let factor = double_flux / TAU;
+    if factor > 0.0 { factor } else { 0.0 }
 }
 
 /// The square of the sine of half the angle between unit vectors, from their difference.
@@ -69,18 +78,22 @@ fn sine_squared(step: DVec3) -> f64 {
 
 /// The z component of twice the flux, see `flux.rs`; and the sum of the squared sines of half the arcs: not a number if a corner is not.
 #[inline]
-fn double_flux(ring: &[DVec3], excess: impl Fn(f64) -> f64) -> (f64, f64) {
+fn double_flux(mut corners: impl Iterator<Item = DVec3>, excess: impl Fn(f64) -> f64) -> (f64, f64) {
     let (mut flat, mut curved, mut all) = (0.0, 0.0, 0.0);
-    let Some((&origin, rest)) = ring.split_first() else { return (0.0, 0.0) };
-    let mut a = origin;
-    for &b in rest {
+    let Some(origin) = corners.next() else { return (0.0, 0.0) };
+    let mut add = |a: DVec3, b: DVec3| {
         let (step, off) = (b - a, a - origin);
         let h = sine_squared(step);
         flat += off.x * step.y - off.y * step.x;
         curved += excess(h) * (a.x * step.y - a.y * step.x);
         all += h;
-        a = b;
+    };
+    let mut last = origin;
+    for corner in corners {
+        add(last, corner);
+        last = corner;
     }
+    add(last, origin);
     (flat + curved, all)
 }
 
@@ -150,9 +163,9 @@ mod tests {
     #[test]
     fn null_vectors_are_left_out() {
         let receiver = Receiver::new(DVec3::Z);
-        let ring = [DVec3::X, DVec3::ZERO, DVec3::Y, DVec3::Z, DVec3::X].map(|v| receiver.turned(v));
-        assert!((Receiver::factor(&ring) - 0.25).abs() < 1e-15);
-        assert!(Receiver::factor(&[]) == 0.0);
+        let ring = [DVec3::X, DVec3::ZERO, DVec3::Y, DVec3::Z].map(|v| receiver.turned(v));
+        assert!((Receiver::factor(ring.into_iter()) - 0.25).abs() < 1e-15);
+        assert!(Receiver::factor(std::iter::empty()) == 0.0);
     }
 
     proptest! {
@@ -178,13 +191,14 @@ mod tests {
                 .map(|corner| receiver.turned(corner))
                 .collect();
             let expected = form_factor(&ring, DVec3::Z);
+            let factor = Receiver::factor(ring.iter().copied());
             ring.push(ring[0]);
             let steps: Vec<f64> = ring.windows(2).map(|arc| arc[1].distance(arc[0])).collect();
             let perimeter: f64 = steps.iter().sum();
             // Both are off by so much at most. Corners count as unit vectors in one and as directions in the other, and are 2e-16 apart:
             // that moves as much of the chords beside them.
             let bound = 4e-16 * (expected + perimeter * (perimeter / 2.0).min(2.0)) + 2e-16 * perimeter / TAU;
-            prop_assert!((Receiver::factor(&ring) - expected).abs() <= bound, "{} {expected} {bound:e}", Receiver::factor(&ring));
+            prop_assert!((factor - expected).abs() <= bound, "{factor} {expected} {bound:e}");
         }
     }
 }

@@ -5,7 +5,7 @@ use super::receiver::Receiver;
 use super::solid_angle;
 use super::visible::Visible;
 use crate::contour::{Cell, ContourImage, VisibleRegion};
-use crate::scene::{ObjectId, PlaneId, PolygonId, Scene, Side};
+use crate::scene::{ObjectId, PieceRef, PlaneId, PolygonId, Scene, Side};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -76,13 +76,7 @@ impl ContourImage {
         let receiver = Receiver::new(self.normal()?);
         // Each direction is a corner of several cells.
         let turned: Vec<DVec3> = self.directions().map(|direction| receiver.turned(direction)).collect();
-        let mut corners = Vec::new();
-        Some(self.sums(|cell| {
-            corners.clear();
-            corners.extend(cell.corners().map(|corner| turned[corner]));
-            corners.push(corners[0]);
-            Receiver::factor(&corners)
-        }))
+        Some(self.sums(|cell| Receiver::factor(cell.corners().map(|corner| turned[corner]))))
     }
 
     /// The same, each sum with an error below 1e-9 of itself, or below 1e-24 if that is more: also of what is small, far, thin, cut off by
@@ -119,8 +113,8 @@ impl ContourImage {
             corners.clear();
             corners.extend(cell.boundary());
             turned.clear();
-            turned.extend(corners.iter().chain(corners.first()).map(|&corner| receiver.turned(corner)));
-            let factor = Receiver::factor(&turned);
+            turned.extend(corners.iter().map(|&corner| receiver.turned(corner)));
+            let factor = Receiver::factor(turned.iter().copied());
             sums[place as usize].add(Bounded::of(cell, &corners, normal, factor));
         }
         let is_poor: Vec<bool> = sums.iter().map(|sum| sum.is_poor()).collect();
@@ -159,25 +153,26 @@ impl Places {
     fn of(image: &ContourImage) -> Self {
         let scene = image.scene();
         let mut visible = Visible::none(scene.polygon_count());
-        let mut seen = Vec::with_capacity(image.cell_count());
         // Cells that follow each other are mostly of one plane.
-        let mut last: Option<(PlaneId, bool)> = None;
-        for cell in image.cells() {
-            let Some(piece) = cell.piece() else {
-                seen.push(None);
-                continue;
-            };
-            let piece = scene.piece(piece);
+        let mut last: Option<(PlaneId, Side)> = None;
+        let mut side_of = |cell: Cell<'_>, piece: PieceRef<'_>| {
             let plane = piece.plane_id();
-            let is_above = match last {
-                Some((known, is_above)) if known == plane => is_above,
-                _ => cell.side() == Some(piece.facing()),
+            let above = match last {
+                Some((known, above)) if known == plane => above,
+                _ if cell.side() == Some(piece.facing()) => Side::Front,
+                _ => Side::Back,
             };
-            last = Some((plane, is_above));
-            visible.insert(piece.polygon());
-            let side = if is_above { piece.facing() } else { piece.facing().opposite() };
-            seen.push(Some((piece.polygon(), side)));
-        }
+            last = Some((plane, above));
+            if above == Side::Front { piece.facing() } else { piece.facing().opposite() }
+        };
+        let seen: Vec<Option<(PolygonId, Side)>> = image
+            .cells()
+            .map(|cell| {
+                let piece = scene.piece(cell.piece()?);
+                visible.insert(piece.polygon());
+                Some((piece.polygon(), side_of(cell, piece)))
+            })
+            .collect();
         let mut polygons = Vec::with_capacity(visible.count());
         polygons.extend(visible.iter());
         let place = |seen: Option<(PolygonId, Side)>| {
@@ -207,9 +202,7 @@ impl Cell<'_> {
     /// Its form factor; `None` if the domain has no normal. Never negative.
     pub fn form_factor(self) -> Option<f64> {
         let receiver = Receiver::new(self.image().normal()?);
-        let corners: Vec<DVec3> =
-            self.boundary().chain(self.boundary().take(1)).map(|corner| receiver.turned(corner)).collect();
-        Some(Receiver::factor(&corners))
+        Some(Receiver::factor(self.boundary().map(|corner| receiver.turned(corner))))
     }
 }
 

@@ -258,31 +258,31 @@ impl Walk<'_> {
     /// Cuts the leaves in which panels are seen along the edges between their pieces.
     fn tell_apart(&mut self, shown: Side) {
         let panels = &self.hierarchy.panels;
-        while let Some((leaf, parts)) = self.sight.buffers.walk.parts.pop() {
-            let seam = match parts {
-                Parts::One(piece) => {
-                    self.sight.contour.rename(leaf, piece);
-                    continue;
-                }
-                Parts::Two(seam) => panels.seam(seam),
-            };
-            let half = self.sight.along_edge(seam.side, shown);
-            let Sight { contour, buffers: Buffers { work, directions: numbers, walk, .. }, skeleton, .. } =
-                &mut self.sight;
-            // Where the leaf reaches the panel's own boundary, the seam ends in a vertex of the scene.
-            let known = |directions: &mut Directions, cache: &mut ExactCache, arc: PolygonArc| {
-                let line = directions.line(arc.along.circle())?;
-                let end = seam.ends.iter().find(|end| end.lines.contains(&line))?;
-                let make = || directions.push_point(skeleton, end.point, cache).0;
-                Some(DirectionId(numbers.of(end.point.0, make)))
-            };
-            let [first, second] = contour.cut_leaf(skeleton, leaf, half, known, work);
-            let [one, other] = seam.halves;
-            if let Some(leaf) = first {
-                walk.parts.push((leaf, one));
+        while let Some((mut leaf, mut parts)) = self.sight.buffers.walk.parts.pop() {
+            while let Parts::Two(seam) = parts {
+                let seam = panels.seam(seam);
+                let half = self.sight.along_edge(seam.side, shown);
+                let Sight { contour, buffers: Buffers { work, directions: numbers, walk, .. }, skeleton, .. } =
+                    &mut self.sight;
+                // Where the leaf reaches the panel's own boundary, the seam ends in a vertex of the scene.
+                let known = |directions: &mut Directions, cache: &mut ExactCache, arc: PolygonArc| {
+                    let line = directions.line(arc.along.circle())?;
+                    let end = seam.ends.iter().find(|end| end.lines.contains(&line))?;
+                    let make = || directions.push_point(skeleton, end.point, cache).0;
+                    Some(DirectionId(numbers.of(end.point.0, make)))
+                };
+                let [one, other] = seam.halves;
+                (leaf, parts) = match contour.cut_leaf(skeleton, leaf, half, known, work) {
+                    [Some(first), Some(second)] => {
+                        walk.parts.push((first, one));
+                        (second, other)
+                    }
+                    [Some(first), None] => (first, one),
+                    [None, second] => (second.unwrap_or(leaf), other),
+                };
             }
-            if let Some(leaf) = second {
-                walk.parts.push((leaf, other));
+            if let Parts::One(piece) = parts {
+                self.sight.contour.rename(leaf, piece);
             }
         }
     }
