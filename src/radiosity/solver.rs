@@ -326,20 +326,28 @@ impl<'a> Solver<'a> {
         Shot { patch, power }
     }
 
-    /// For each patch the first one of its group, and for each of these what part of the power that is emitted in the group is yet to be sent there, or was sent too much; where nothing is emitted, of all that is.
+    /// For each patch the first one of its group, and for each of these what part of the power that is emitted in the group is yet to be sent there, or was sent too much. Groups in which nothing is emitted are one
+    /// with that in which most is, so that of all together no larger part is left.
     fn left_in_groups(&self) -> (Vec<u32>, Vec<f64>) {
-        let firsts = firsts(&self.state.groups);
-        let (mut emitted, mut left) = (vec![DVec3::ZERO; firsts.len()], vec![DVec3::ZERO; firsts.len()]);
-        let mut whole = DVec3::ZERO;
-        for (patch, &first) in firsts.iter().enumerate() {
-            emitted[first as usize] += self.emission[patch] * self.area(patch);
-            left[first as usize] += self.state.unshot[patch].abs() * self.area(patch);
-            whole += self.emission[patch] * self.area(patch);
-        }
-        let part = |(left, emitted): (&DVec3, &DVec3)| {
-            let emitted = if *emitted == DVec3::ZERO { whole } else { *emitted };
+        let mut firsts = firsts(&self.state.groups);
+        let sums = |of: &[DVec3], firsts: &[u32]| {
+            let mut sums = vec![DVec3::ZERO; firsts.len()];
+            for (patch, &first) in firsts.iter().enumerate() {
+                sums[first as usize] += of[patch].abs() * self.area(patch);
+            }
+            sums
+        };
+        let emitted = sums(&self.emission, &firsts);
+        let brightest = (0..firsts.len()).max_by(|&a, &b| strength(emitted[a]).total_cmp(&strength(emitted[b])));
+        for first in &mut firsts {
             // Numbers do not hold parts of less.
-            left.element_sum() / emitted.element_sum().max(FAINT)
+            if strength(emitted[*first as usize]) < FAINT {
+                *first = brightest.unwrap_or(0) as u32;
+            }
+        }
+        let (emitted, left) = (sums(&self.emission, &firsts), sums(&self.state.unshot, &firsts));
+        let part = |(left, emitted): (&DVec3, &DVec3)| {
+            if *left == DVec3::ZERO { 0.0 } else { strength(*left) / strength(*emitted) }
         };
         let parts = left.iter().zip(&emitted).map(part).collect();
         (firsts, parts)
