@@ -176,7 +176,10 @@ impl Exchange {
         let ElementRows { blockers, looker, touching, .. } = self.element_rows(&alone);
         let pairs = half_shut(&blockers, &looker, touching)?;
         let polygons = |pair: [u32; 2]| on_each_other(&self.elements, pair.map(|facet| facet as usize));
-        Ok(pairs.into_iter().filter_map(polygons).collect())
+        let mut found: Vec<[PolygonId; 2]> = pairs.into_iter().filter_map(polygons).collect();
+        found.sort_unstable();
+        found.dedup();
+        Ok(found)
     }
 
     /// The first two polygons that show the same way and lie on each other, in one plane only within rounding, as the facades of an annex flush with the building that it reaches into do in a model that has been turned: which of them is seen is for rounding to say, from each point
