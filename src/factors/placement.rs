@@ -1,6 +1,6 @@
 //! Where a scene is while it is computed with.
 
-use crate::scene::Scene;
+use crate::scene::{Scene, origin_near};
 use glam::DVec3;
 
 /// Coordinates near the origin and near 1, of which every one of the scene's is the exact image.
@@ -15,13 +15,8 @@ impl Placement {
     pub(super) fn of(scene: &Scene) -> Self {
         let (low, high) = scene.bounds().unwrap_or((DVec3::ZERO, DVec3::ZERO));
         // Points between corners round to places as far apart as numbers are there, and with them what is integrated: a scene that is farther from
-        // the origin than it is large is moved there. All differences are exact: none is of numbers of which one is more than twice the other
-        // (Sterbenz 1974).
-        let origin = |low: f64, high: f64| {
-            let is_far = if low > 0.0 { 0.5 * high <= low } else { high < 0.0 && 0.5 * low >= high };
-            if is_far { low } else { 0.0 }
-        };
-        let origin = DVec3::new(origin(low.x, high.x), origin(low.y, high.y), origin(low.z, high.z));
+        // the origin than it is large is moved there.
+        let origin = origin_near(low, high);
         let most = (low - origin).abs().max((high - origin).abs()).max_element();
         Self { origin, scale: inverse_power_of_two(most) }
     }

@@ -13,6 +13,7 @@ mod flat;
 mod judge;
 mod material;
 mod moved;
+mod origin;
 mod problem;
 mod repair;
 mod report;
@@ -36,6 +37,7 @@ pub use splitter::Splitter;
 
 pub(crate) use flat::unit_scale;
 pub(crate) use moved::Carried;
+pub(crate) use origin::origin_near;
 
 use glam::DVec3;
 use std::ops::Range;

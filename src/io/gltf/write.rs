@@ -1,6 +1,7 @@
 //! The GLB writer: triangles with a colour, or with a colour for each vertex.
 
 use super::glb::MAGIC;
+use crate::scene::origin_near;
 use glam::DVec3;
 use serde_json::{Value, json};
 use std::io::{self, Error, ErrorKind, Write};
@@ -150,21 +151,11 @@ fn check_about<'a>(origin: DVec3, positions: impl Iterator<Item = &'a DVec3>) ->
 /// Below this, numbers that are `f32` lose digits.
 const LEAST: f64 = 1e-30;
 
-/// What is to be the origin of corners: along each axis 0, or their lowest or highest coordinate if they are farther from 0 than apart. No difference is rounded: none is of numbers of which one is more than twice the
-/// other (Sterbenz 1974).
+/// What is to be the origin of corners.
 fn origin<'a>(positions: impl Iterator<Item = &'a DVec3>) -> DVec3 {
     let [low, high] =
         positions.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], &p| [low.min(p), high.max(p)]);
-    let origin = |low: f64, high: f64| {
-        if low > 0.0 && 0.5 * high <= low {
-            low
-        } else if high < 0.0 && 0.5 * low >= high {
-            high
-        } else {
-            0.0
-        }
-    };
-    DVec3::new(origin(low.x, high.x), origin(low.y, high.y), origin(low.z, high.z))
+    origin_near(low, high)
 }
 
 const FLOATS: u32 = 5126;
@@ -258,7 +249,7 @@ mod tests {
         assert_eq!(corners, [place, place + DVec3::new(0.5, 0.5, 0.0), place + DVec3::Y * 0.5]);
         // Nothing is moved that is about the origin, nor along an axis on which it is.
         let text = String::from_utf8_lossy(&file).into_owned();
-        assert!(text.contains("\"translation\":[465000.25,-5431999.5,0.0]"), "{text}");
+        assert!(text.contains("\"translation\":[465000.25,-5432000.5,0.0]"), "{text}");
         let mut near = Vec::new();
         write_glb(&mut near, &[square("a")]).expect("written");
         assert!(!String::from_utf8_lossy(&near).contains("translation"));
